@@ -1,0 +1,111 @@
+#pragma once
+// The domain's nouns that cross process borders. Pure data; the wire's messages are converted to these
+// in proto/convert.{h,cpp} and nowhere else.
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "proto/mix.h"
+
+namespace penumbra {
+
+/// Pixels [x0,x1) × [y0,y1), y downwards.
+struct PixelRect {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  bool operator==(const PixelRect&) const = default;
+  int width() const { return x1 - x0; }
+  int height() const { return y1 - y0; }
+  int64_t area() const { return int64_t{width()} * height(); }
+};
+
+struct CpuSecondsBudget { double seconds = 0; bool operator==(const CpuSecondsBudget&) const = default; };
+struct SppBudget { int64_t passes = 0; bool operator==(const SppBudget&) const = default; };
+struct TargetErrorBudget { double relmse = 0; bool operator==(const TargetErrorBudget&) const = default; };
+/// What ends a mix: CPU seconds for the whole image summed over cores, camera samples per pixel, or an
+/// estimated relMSE.
+using Budget = std::variant<CpuSecondsBudget, SppBudget, TargetErrorBudget>;
+
+enum class SamplerKind { kIndependent, kStratified, kSobol };
+
+/// A reply to «which pixels to look at closely».
+struct Region { std::string name; PixelRect rect; bool operator==(const Region&) const = default; };
+
+/// SHA-256, lower-case hexadecimal, 64 characters.
+using Digest = std::string;
+
+/// Everything that decides a job's pixels, given the bundle's bytes.
+struct JobSpec {
+  std::string scene;          ///< absolute path on the client's machine, for people
+  Digest bundle;              ///< digest of the bundle's index
+  std::vector<Mix> mixes;
+  Budget budget;
+  SamplerKind sampler = SamplerKind::kStratified;
+  int width = 0, height = 0;  ///< full image, pixels
+  PixelRect crop;             ///< the part that is rendered, absolute pixels
+  int max_depth = 1;          ///< vertices with direct light; >1 follows specular chains
+  int tile = 64;              ///< edge of a tile, pixels
+  uint64_t seed = 0;
+  bool strict = false;        ///< warnings about the scene are errors
+  std::vector<int64_t> plan;  ///< passes per mix, fixed (replay); empty: from the budget
+  std::string reference;      ///< path on the client's machine, for people and `fetch`
+  std::vector<Region> regions;
+  bool operator==(const JobSpec&) const = default;
+};
+
+/// Passes [begin,end) of one mix.
+struct PassRange {
+  int64_t begin = 0, end = 0;
+  bool operator==(const PassRange&) const = default;
+  int64_t count() const { return end - begin; }
+};
+
+/// Pilot samples have random numbers of their own and never reach the image.
+enum class TaskKind { kPilot, kRun };
+
+/// One tile × a range of passes × all mixes that are timed against each other.
+struct TileTask {
+  uint64_t id = 0;                ///< unique within the job, in merge order
+  TaskKind kind = TaskKind::kRun;
+  PixelRect tile;
+  std::vector<PassRange> passes;  ///< one per mix; may be empty for a mix
+  int64_t group = 1;              ///< passes per independently scrambled group (sampling patterns)
+  uint64_t shuffle = 0;           ///< seeds the interleaving of the mixes' slices; not the image
+  /// kPilot: thread-CPU seconds after which no further pass of a mix is begun (0: all passes).
+  double pilot_seconds = 0;
+  bool operator==(const TileTask&) const = default;
+};
+
+/// What one mix of one tile task cost. Never part of the image's bits.
+struct MixCost {
+  int64_t passes = 0;            ///< passes done
+  double cpu_seconds = 0;        ///< thread CPU over the tile loop
+  uint64_t rays = 0;             ///< camera, specular and shadow rays
+  uint64_t line_queries = 0;
+  uint64_t non_finite = 0;       ///< samples refused at the film's door
+  /// Sum over the tile's pixels and channels of s²/(mean² + 1e-2), s² the variance of one pass; what a
+  /// pilot tells `--target-error`. 0 with fewer than two passes.
+  double relative_variance = 0;
+  bool operator==(const MixCost&) const = default;
+};
+
+/// One effect that a scene calls for (design §8), and why.
+struct Need { std::string effect, why; bool operator==(const Need&) const = default; };
+
+/// What a worker learnt while it loaded a scene.
+struct LoadReport {
+  double parse_seconds = 0, build_seconds = 0;
+  std::vector<Need> needs;
+  std::vector<std::string> warnings;
+  bool operator==(const LoadReport&) const = default;
+};
+
+struct WorkerInfo {
+  std::string id, host, isa;  ///< incarnation UUID, host name, widest vector set in use
+  int cores = 0;              ///< threads that render
+  bool operator==(const WorkerInfo&) const = default;
+};
+
+}  // namespace penumbra

@@ -1,0 +1,58 @@
+#pragma once
+// A mix says how the light samples of a shading point are made: which strategies, how many of each,
+// how they are combined. Client, server and worker speak of mixes in these words.
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "absl/status/statusor.h"
+
+namespace penumbra {
+
+enum class StrategyKind {
+  kBsdf,                 ///< `bsdf`: direction from the material's lobes
+  kArea,                 ///< `area`: point uniform on the light's surface
+  kSolidAngle,           ///< `sa`: point uniform in the solid angle of the light's shape
+  kLineArea,             ///< `line-area@DEG`: chord at DEG from edge u, offset by chord length
+  kLineSolidAngleU,      ///< `line-sa@u`: chord parallel to edge u, uniform solid angle
+  kLineSolidAngleV,      ///< `line-sa@v`: chord parallel to edge v, uniform solid angle
+  kLineAnalytic,         ///< `line-analytic@DEG`: Billen & Dutré 2016
+};
+
+/// True where the strategy chooses a line first and knows its visible part.
+bool is_line(StrategyKind kind);
+
+struct StrategyCount {
+  StrategyKind kind = StrategyKind::kBsdf;
+  double angle_degrees = 0;  ///< kLineArea and kLineAnalytic only, in [0,180)
+  int count = 1;             ///< samples per shading point and light, >= 1
+  bool operator==(const StrategyCount&) const = default;
+};
+
+enum class Combination { kBalance, kFree, kPower, kAverage, kSmooth };
+
+struct Mix {
+  bool automatic = false;  ///< `auto`: the planner chooses per tile; then strategies is empty
+  std::vector<StrategyCount> strategies;
+  Combination combination = Combination::kBalance;
+  std::optional<double> smooth_width;  ///< kSmooth: scene units; empty means derived from the light
+  bool operator==(const Mix&) const = default;
+
+  int samples() const;  ///< light samples per shading point and light
+};
+
+/// Reads the grammar of interface.md: strategy[:count] joined by `+`, then /combination.
+/// InvalidArgument names the word at fault.
+absl::StatusOr<Mix> parse_mix(std::string_view text);
+
+/// The normal form: counts and combination always written. parse_mix(label(m)) == m.
+std::string label(const Mix& mix);
+
+/// Labels of a job's mixes; a repeated mix gets `#2`, `#3`, …
+std::vector<std::string> labels(const std::vector<Mix>& mixes);
+
+/// The label as a file name: `/` -> `_`, and `:` `@` `=` -> `-`.
+std::string file_stem(std::string_view label);
+
+}  // namespace penumbra

@@ -1,0 +1,114 @@
+#pragma once
+// The scene's surfaces as the renderer asks for them: nearest hit, shadow segment, line query. The only
+// room that knows Embree (embree_scene.cpp includes rtcore.h, nothing else does).
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "scenes/mesh.h"
+#include "worker/geometry/intervals.h"
+
+namespace penumbra {
+
+constexpr uint32_t kNone = ~uint32_t{0};
+
+/// Decides whether a hit of an alpha-tested mesh counts: primitive of the mesh, barycentric (u,v).
+using AlphaTest = std::function<bool(uint32_t primitive, float u, float v)>;
+
+/// A mesh as the scene has it. Geometry keeps a reference to the arrays: they must outlive it.
+struct MeshInput {
+  const TriangleMesh* mesh = nullptr;  ///< world space, or object space if it belongs to an object
+  AlphaTest alpha;                     ///< empty: opaque
+  bool visible = true;                 ///< false: no ray and no line meets it (material "interface")
+};
+
+/// Meshes [first,last) that are placed together by instances, in object space.
+struct ObjectInput {
+  uint32_t first_mesh = 0, last_mesh = 0;
+};
+
+/// Row-vector affine object-to-world of one object.
+struct InstanceInput {
+  uint32_t object = 0;
+  Matrix to_world;
+};
+
+/// Identity of a surface primitive. instance == kNone for what is placed directly in the world.
+struct PrimitiveId {
+  uint32_t instance = kNone, mesh = kNone, primitive = kNone;
+  bool operator==(const PrimitiveId&) const = default;
+};
+
+struct Ray {
+  Vec3f origin, direction;  ///< direction need not be unit; distances are in its length
+  float near = 0, far = 0;
+};
+
+struct Hit {
+  PrimitiveId id;
+  float distance = 0;       ///< along the ray, in lengths of its direction
+  float u = 0, v = 0;       ///< barycentric: p = (1-u-v) p0 + u p1 + v p2
+};
+
+/// A chord a→b seen from x; a and b lie on (or in the plane of) a light's surface.
+struct LineQuery {
+  Vec3f x;                  ///< already moved off its own surface (see SurfacePoint::offset)
+  Vec3f a, b;
+  PrimitiveId light;        ///< primitives [light.primitive, light.primitive + light_primitives) of
+  uint32_t light_primitives = 0;  ///< light.mesh never hide the chord: they are the light's own (flat) surface
+};
+
+/// What line and ray queries cost, for statistics; one per thread.
+struct QueryCounters {
+  uint64_t rays = 0, line_queries = 0;
+  uint64_t nodes_visited = 0, triangles_tested = 0;
+};
+
+class LineBvh;
+class EmbreeScene;
+
+/// Immutable after build; every query is const and may run on any number of threads.
+class Geometry {
+ public:
+  /// `meshes` not covered by an object are in the world. Builds on `threads` threads.
+  static absl::StatusOr<Geometry> build(std::span<const MeshInput> meshes, std::span<const ObjectInput> objects,
+                                        std::span<const InstanceInput> instances, int threads);
+  Geometry(Geometry&&) noexcept;
+  Geometry& operator=(Geometry&&) noexcept;
+  ~Geometry();
+
+  /// Nearest hit in (near, far].
+  std::optional<Hit> intersect(const Ray& ray, QueryCounters& counters) const;
+
+  /// Anything strictly between x and y? Both already moved off their surfaces. Alpha-tested meshes count.
+  bool occluded(const Vec3f& x, const Vec3f& y, QueryCounters& counters) const;
+
+  /// Like occluded(), but only meshes that a line query cannot see (alpha-tested ones); false without any.
+  bool occluded_by_alpha(const Vec3f& x, const Vec3f& y, QueryCounters& counters) const;
+  bool has_alpha() const;
+
+  /// The visible part of each query's chord as intervals of v in [0,1], P(v) = a + v (b - a); opaque
+  /// meshes only. Queries of one call share x (they are traced together where that is faster); the
+  /// result of each does not depend on the others. `out` is resized to queries.size().
+  void visible(std::span<const LineQuery> queries, std::vector<IntervalSet>& out, QueryCounters& counters) const;
+
+  struct BuildTimes { double embree_seconds = 0, line_bvh_seconds = 0; };
+  BuildTimes build_times() const;
+  /// Of the line BVH, per triangle.
+  double line_bytes_per_triangle() const;
+  /// Bounds of everything; min > max if empty.
+  void bounds(Vec3f& lo, Vec3f& hi) const;
+  /// Widest instruction set that line queries use here: "avx512", "avx2" or "scalar".
+  const char* isa() const;
+
+ private:
+  Geometry();
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace penumbra

@@ -1,0 +1,44 @@
+#pragma once
+// Counter-based random numbers: a number is a pure function of its key, so an image depends on pass
+// counts and seed, never on the order or the place in which passes are made.
+#include <cstdint>
+
+#include "proto/job.h"
+#include "scenes/math.h"
+
+namespace penumbra {
+
+/// Philox4x32-10 (Salmon et al. 2011) of a 128-bit counter under a 64-bit key.
+struct Random4 { uint32_t x[4]; };
+Random4 philox(uint64_t key, uint64_t counter_lo, uint64_t counter_hi);
+
+/// 53-bit uniform in [0,1) from 64 random bits; never 1.
+double uniform(uint64_t bits);
+
+/// Every random number of one pixel in one pass of one mix. Copy freely: 64 bytes, no state.
+class PassSampler {
+ public:
+  /// `group`: passes per independently scrambled group (>= 1); stratification spans a group, never two.
+  PassSampler(SamplerKind kind, uint64_t seed, uint32_t mix, TaskKind stage, uint32_t pixel, int64_t pass,
+              int64_t group);
+
+  /// Position in the pixel's filter, lens, time: u in [0,1)².
+  Vec2d film() const;
+  Vec2d lens() const;
+  double time() const;
+
+  /// Sample i of n of a strategy (`slot`: its place in the mix) for one light at path vertex `depth`.
+  /// The n samples of a pass, and those of all passes of a group, are stratified together in 2D.
+  Vec2d light(int depth, uint32_t light, int slot, int i, int n) const;
+  /// A third number for the same sample: which lobe, which part of the light.
+  double choice(int depth, uint32_t light, int slot, int i, int n) const;
+  /// For choosing lights and for specular branches; `i` counts the uses.
+  double select(int depth, int i) const;
+
+ private:
+  SamplerKind kind_;
+  uint64_t key_;
+  uint64_t pass_in_group_, group_index_, group_size_;
+};
+
+}  // namespace penumbra
