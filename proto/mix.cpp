@@ -1,15 +1,13 @@
 #include "proto/mix.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <map>
 
-#include "absl/strings/numbers.h"
-#include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
-#include "absl/strings/str_replace.h"
-#include "absl/strings/str_split.h"
-#include "absl/strings/strip.h"
+#include "proto/status.h"
 
 namespace penumbra {
 namespace {
@@ -18,24 +16,29 @@ namespace {
 constexpr int kMostSamples = 65536;
 
 absl::Status fault(std::string_view word, std::string_view why) {
-  return absl::InvalidArgumentError(absl::StrCat("--mix: '", word, "': ", why));
+  return invalid_input("--mix: '{}': {}", word, why);
 }
 
-/// Shortest decimal that reads back as the same double.
-std::string shortest(double x) {
-  for (int digits = 1; digits < 17; ++digits) {
-    std::string s = absl::StrFormat("%.*g", digits, x);
-    double back = 0;
-    if (absl::SimpleAtod(s, &back) && back == x) return s;
-  }
-  return absl::StrFormat("%.17g", x);
+/// The whole of the text as a number, or nothing.
+template <class Number>
+std::optional<Number> number(std::string_view text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+bool consume_prefix(std::string_view& text, std::string_view prefix) {
+  if (!text.starts_with(prefix)) return false;
+  text.remove_prefix(prefix.size());
+  return true;
 }
 
 absl::StatusOr<double> parse_angle(std::string_view word, std::string_view text) {
-  double degrees = 0;
-  if (!absl::SimpleAtod(text, &degrees) || !std::isfinite(degrees))
+  const auto degrees = number<double>(text);
+  if (!degrees || !std::isfinite(*degrees))
     return fault(word, "the angle after '@' must be a number of degrees");
-  const double turned = std::fmod(degrees, 180.0);
+  const double turned = std::fmod(*degrees, 180.0);
   return turned < 0 ? turned + 180.0 : turned;
 }
 
@@ -44,20 +47,20 @@ absl::StatusOr<StrategyCount> parse_strategy(std::string_view word) {
   std::string_view name = word;
   if (const size_t colon = word.find(':'); colon != std::string_view::npos) {
     name = word.substr(0, colon);
-    if (!absl::SimpleAtoi(word.substr(colon + 1), &s.count) || s.count < 1 || s.count > kMostSamples)
-      return fault(word, absl::StrCat("the count must be a whole number from 1 to ", kMostSamples));
+    const auto count = number<int>(word.substr(colon + 1));
+    if (!count || *count < 1 || *count > kMostSamples)
+      return fault(word, fmt::format("the count must be a whole number from 1 to {}", kMostSamples));
+    s.count = *count;
   }
   if (name == "bsdf") { s.kind = StrategyKind::kBsdf; return s; }
   if (name == "area") { s.kind = StrategyKind::kArea; return s; }
   if (name == "sa") { s.kind = StrategyKind::kSolidAngle; return s; }
   if (name == "line-sa@u") { s.kind = StrategyKind::kLineSolidAngleU; return s; }
   if (name == "line-sa@v") { s.kind = StrategyKind::kLineSolidAngleV; return s; }
-  const bool analytic = absl::ConsumePrefix(&name, "line-analytic@");
-  if (analytic || absl::ConsumePrefix(&name, "line-area@")) {
+  const bool analytic = consume_prefix(name, "line-analytic@");
+  if (analytic || consume_prefix(name, "line-area@")) {
     s.kind = analytic ? StrategyKind::kLineAnalytic : StrategyKind::kLineArea;
-    auto angle = parse_angle(word, name);
-    if (!angle.ok()) return angle.status();
-    s.angle_degrees = *angle;
+    ASSIGN_OR_RETURN(s.angle_degrees, parse_angle(word, name));
     return s;
   }
   return fault(word, "unknown strategy; there are bsdf, area, sa, line-area@DEG, line-sa@u, line-sa@v, "
@@ -69,13 +72,13 @@ absl::Status parse_combination(std::string_view word, Mix& mix) {
   else if (word == "free") mix.combination = Combination::kFree;
   else if (word == "power") mix.combination = Combination::kPower;
   else if (word == "average") mix.combination = Combination::kAverage;
-  else if (absl::ConsumePrefix(&word, "smooth=")) {
+  else if (consume_prefix(word, "smooth=")) {
     mix.combination = Combination::kSmooth;
     if (word == "auto") return absl::OkStatus();
-    double width = 0;
-    if (!absl::SimpleAtod(word, &width) || !(width > 0) || !std::isfinite(width))
+    const auto width = number<double>(word);
+    if (!width || !(*width > 0) || !std::isfinite(*width))
       return fault(word, "the width of smooth= must be a positive number or auto");
-    mix.smooth_width = width;
+    mix.smooth_width = *width;
   } else {
     return fault(word, "unknown combination; there are balance, free, power, average, smooth=WIDTH|auto");
   }
@@ -87,10 +90,10 @@ std::string name_of(const StrategyCount& s) {
     case StrategyKind::kBsdf: return "bsdf";
     case StrategyKind::kArea: return "area";
     case StrategyKind::kSolidAngle: return "sa";
-    case StrategyKind::kLineArea: return absl::StrCat("line-area@", shortest(s.angle_degrees));
+    case StrategyKind::kLineArea: return fmt::format("line-area@{}", s.angle_degrees);
     case StrategyKind::kLineSolidAngleU: return "line-sa@u";
     case StrategyKind::kLineSolidAngleV: return "line-sa@v";
-    case StrategyKind::kLineAnalytic: return absl::StrCat("line-analytic@", shortest(s.angle_degrees));
+    case StrategyKind::kLineAnalytic: return fmt::format("line-analytic@{}", s.angle_degrees);
   }
   std::abort();
 }
@@ -102,7 +105,7 @@ std::string name_of(const Mix& mix) {
     case Combination::kPower: return "power";
     case Combination::kAverage: return "average";
     case Combination::kSmooth:
-      return absl::StrCat("smooth=", mix.smooth_width ? shortest(*mix.smooth_width) : "auto");
+      return mix.smooth_width ? fmt::format("smooth={}", *mix.smooth_width) : "smooth=auto";
   }
   std::abort();
 }
@@ -129,14 +132,16 @@ absl::StatusOr<Mix> parse_mix(std::string_view text) {
   std::string_view sum = text;
   if (const size_t slash = text.find('/'); slash != std::string_view::npos) {
     sum = text.substr(0, slash);
-    if (absl::Status s = parse_combination(text.substr(slash + 1), mix); !s.ok()) return s;
+    RETURN_IF_ERROR(parse_combination(text.substr(slash + 1), mix));
   }
-  for (std::string_view word : absl::StrSplit(sum, '+')) {
-    auto strategy = parse_strategy(word);
-    if (!strategy.ok()) return strategy.status();
-    mix.strategies.push_back(*strategy);
+  for (;;) {
+    const size_t plus = sum.find('+');
+    ASSIGN_OR_RETURN(const StrategyCount strategy, parse_strategy(sum.substr(0, plus)));
+    mix.strategies.push_back(strategy);
+    if (plus == std::string_view::npos) break;
+    sum.remove_prefix(plus + 1);
   }
-  if (mix.samples() > kMostSamples) return fault(text, absl::StrCat("more than ", kMostSamples, " samples"));
+  if (mix.samples() > kMostSamples) return fault(text, fmt::format("more than {} samples", kMostSamples));
   const bool has_line = std::any_of(mix.strategies.begin(), mix.strategies.end(),
                                     [](const StrategyCount& s) { return is_line(s.kind); });
   if (mix.combination == Combination::kSmooth && !has_line)
@@ -148,8 +153,8 @@ std::string label(const Mix& mix) {
   if (mix.automatic) return "auto";
   std::string out;
   for (const StrategyCount& s : mix.strategies)
-    absl::StrAppend(&out, out.empty() ? "" : "+", name_of(s), ":", s.count);
-  return absl::StrCat(out, "/", name_of(mix));
+    out += fmt::format("{}{}:{}", out.empty() ? "" : "+", name_of(s), s.count);
+  return fmt::format("{}/{}", out, name_of(mix));
 }
 
 std::vector<std::string> labels(const std::vector<Mix>& mixes) {
@@ -158,13 +163,18 @@ std::vector<std::string> labels(const std::vector<Mix>& mixes) {
   for (const Mix& mix : mixes) {
     std::string l = label(mix);
     const int n = ++seen[l];
-    out.push_back(n == 1 ? l : absl::StrCat(l, "#", n));
+    out.push_back(n == 1 ? l : fmt::format("{}#{}", l, n));
   }
   return out;
 }
 
 std::string file_stem(std::string_view label) {
-  return absl::StrReplaceAll(label, {{"/", "_"}, {":", "-"}, {"@", "-"}, {"=", "-"}});
+  std::string stem(label);
+  for (char& c : stem) {
+    if (c == '/') c = '_';
+    if (c == ':' || c == '@' || c == '=') c = '-';
+  }
+  return stem;
 }
 
 }  // namespace penumbra
