@@ -11,14 +11,14 @@
 namespace penumbra {
 
 /// Means and M2 of one mix over one tile and one range of passes. Arrays are row-major over the rect,
-/// mean and m2 with three channels per pixel (R G B).
+/// mean and m2 with three channels per pixel (R G B). With no passes the arrays are empty.
 struct TilePixels {
   PixelRect rect;
-  int64_t passes = 0;         ///< weight: the same for every pixel
-  int64_t groups = 0;         ///< independent groups among them
-  std::vector<float> mean;    ///< 3 per pixel
-  std::vector<float> m2;      ///< 3 per pixel: sum of weight * (group mean - mean)^2
-  std::vector<float> cost;    ///< CPU µs per pixel, summed over the passes; outside bit-identity
+  int64_t passes = 0;       ///< weight: the same for every pixel
+  int64_t groups = 0;       ///< independent groups among them, 1 <= groups <= passes
+  std::vector<float> mean;  ///< 3 per pixel
+  std::vector<float> m2;    ///< 3 per pixel: sum of weight * (group mean - mean)^2
+  std::vector<float> cost;  ///< CPU µs per pixel, summed over the passes; outside bit-identity
 };
 
 /// All mixes of one tile task.
@@ -26,7 +26,13 @@ struct TileResult {
   std::vector<TilePixels> mixes;
 };
 
-/// Bytes of a result (little-endian, versioned, with the lengths checked on the way back).
+/// Empty if the shapes agree and every value is finite (m2 and cost not negative), else what is wrong.
+/// What the serialisation demands, for whoever builds a TileResult or accepts one.
+std::string fault_of(const TilePixels& pixels);
+
+/// Bytes of a result: `PNTR`, then little-endian: version u32, number of mixes u32; per mix x0 y0 x1 y1 i32,
+/// passes i64, groups i64, and with passes > 0 the float arrays mean, m2, cost, whose lengths follow from
+/// the rect. A result with a fault is a programmer's fault.
 std::string serialize(const TileResult& result);
 /// InvalidArgument for bytes that are not a result, whose shapes disagree, or with a non-finite value.
 absl::StatusOr<TileResult> parse_tile_result(std::string_view bytes);

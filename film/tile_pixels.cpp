@@ -1,0 +1,93 @@
+#include "film/tile_pixels.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "film/bytes.h"
+#include "proto/status.h"
+
+namespace penumbra {
+namespace {
+
+constexpr std::string_view kMagic = "PNTR";
+constexpr uint32_t kVersion = 1;
+constexpr size_t kMixHeaderBytes = 4 * sizeof(int32_t) + 2 * sizeof(int64_t);
+
+bool finite(const std::vector<float>& values) {
+  return std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
+}
+
+bool finite_and_not_negative(const std::vector<float>& values) {
+  return std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v) && v >= 0; });
+}
+
+std::string fault_of_header(const TilePixels& p) {
+  const PixelRect& r = p.rect;
+  if (r.x0 < 0 || r.y0 < 0 || r.x1 <= r.x0 || r.y1 <= r.y0)
+    return fmt::format("rect {},{},{},{} is empty or negative", r.x0, r.y0, r.x1, r.y1);
+  if (p.passes < 0) return fmt::format("{} passes", p.passes);
+  if (p.groups > p.passes || (p.passes > 0 && p.groups < 1) || p.groups < 0)
+    return fmt::format("{} groups of {} passes", p.groups, p.passes);
+  return {};
+}
+
+}  // namespace
+
+std::string fault_of(const TilePixels& p) {
+  if (std::string fault = fault_of_header(p); !fault.empty()) return fault;
+  const size_t pixels = p.passes > 0 ? static_cast<size_t>(p.rect.area()) : 0;
+  if (p.mean.size() != 3 * pixels || p.m2.size() != 3 * pixels || p.cost.size() != pixels)
+    return fmt::format("arrays of {}, {}, {} values for {} pixels", p.mean.size(), p.m2.size(), p.cost.size(),
+                       pixels);
+  if (!finite(p.mean)) return "a mean is not finite";
+  if (!finite_and_not_negative(p.m2)) return "an m2 is negative or not finite";
+  if (!finite_and_not_negative(p.cost)) return "a cost is negative or not finite";
+  return {};
+}
+
+std::string serialize(const TileResult& result) {
+  ByteWriter out;
+  out.put(kMagic);
+  out.put(kVersion);
+  out.put(static_cast<uint32_t>(result.mixes.size()));
+  for (const TilePixels& p : result.mixes) {
+    PENUMBRA_CHECK(fault_of(p).empty());
+    for (const int32_t edge : {p.rect.x0, p.rect.y0, p.rect.x1, p.rect.y1}) out.put(edge);
+    out.put(p.passes);
+    out.put(p.groups);
+    out.put(p.mean);
+    out.put(p.m2);
+    out.put(p.cost);
+  }
+  return out.take();
+}
+
+absl::StatusOr<TileResult> parse_tile_result(std::string_view bytes) {
+  ByteReader in(bytes);
+  uint32_t version = 0, mixes = 0;
+  if (!in.expect(kMagic) || !in.get(version) || !in.get(mixes))
+    return invalid_input("tile result: not a tile result");
+  if (version != kVersion) return invalid_input("tile result: version {}, not {}", version, kVersion);
+  if (mixes > in.left() / kMixHeaderBytes)
+    return invalid_input("tile result: {} mixes in {} bytes", mixes, in.left());
+  TileResult result;
+  result.mixes.resize(mixes);
+  for (uint32_t m = 0; m < mixes; ++m) {
+    TilePixels& p = result.mixes[m];
+    if (!in.get(p.rect.x0) || !in.get(p.rect.y0) || !in.get(p.rect.x1) || !in.get(p.rect.y1) ||
+        !in.get(p.passes) || !in.get(p.groups))
+      return invalid_input("tile result: mix {}: truncated", m);
+    if (const std::string fault = fault_of_header(p); !fault.empty())
+      return invalid_input("tile result: mix {}: {}", m, fault);
+    // An area below 2^62; its tripling cannot overflow, and get() bounds it by the bytes that are left.
+    const uint64_t pixels = p.passes > 0 ? static_cast<uint64_t>(p.rect.area()) : 0;
+    if (!in.get(p.mean, 3 * pixels) || !in.get(p.m2, 3 * pixels) || !in.get(p.cost, pixels))
+      return invalid_input("tile result: mix {}: truncated", m);
+    if (const std::string fault = fault_of(p); !fault.empty())
+      return invalid_input("tile result: mix {}: {}", m, fault);
+  }
+  if (in.left() != 0) return invalid_input("tile result: {} bytes too many", in.left());
+  return result;
+}
+
+}  // namespace penumbra
