@@ -1,0 +1,34 @@
+#pragma once
+// OpenEXR files: the product's images out, any renderer's images in.
+#include <cstdint>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "film/film_image.h"
+
+namespace penumbra {
+
+/// Header attributes of a written image.
+struct ExrHeader {
+  std::string mix;         ///< `penumbra:mix`, the label
+  double cpu_seconds = 0;  ///< `penumbra:cpu_seconds`, float
+  std::string scene;       ///< `penumbra:scene`, absolute path
+  uint64_t seed = 0;       ///< `penumbra:seed`, decimal digits (EXR has no 64-bit integer)
+  bool partial = false;    ///< `penumbra:partial` = 1, only written for an interrupted run
+};
+
+/// Layers R G B, variance.{R,G,B}, samples, cost, those that the image has, 32-bit float, ZIP; the data
+/// window is the image's window, the display window the full image. `penumbra:version` is this program's.
+/// Written whole or not at all; a full disk is an error that names the path.
+absl::Status write_exr(const std::string& path, const FilmImage& image, const ExrHeader& header);
+
+/// Reads the first part of any flat EXR: R G B (or Y for all three) in half, float or uint, scan lines or
+/// tiles, any compression; alpha and foreign layers are ignored. `variance` comes from variance.{R,G,B},
+/// else from stderr.{R,G,B} squared; `samples` and `cost` where they are. Pixels are counted from the
+/// display window's corner. InvalidArgument (naming the path) for what is not such a file, is truncated
+/// or is larger than kMostImageEdge, kMostImagePixels; NotFound if there is none. Values may be
+/// non-finite: the reader of the values decides.
+absl::StatusOr<FilmImage> read_exr(const std::string& path);
+
+}  // namespace penumbra
