@@ -9,16 +9,21 @@
 namespace penumbra {
 
 /// Philox4x32-10 (Salmon et al. 2011) of a 128-bit counter under a 64-bit key.
-struct Random4 { uint32_t x[4]; };
+struct Random4 {
+  uint32_t x[4];
+};
 Random4 philox(uint64_t key, uint64_t counter_lo, uint64_t counter_hi);
 
 /// 53-bit uniform in [0,1) from 64 random bits; never 1.
-double uniform(uint64_t bits);
+inline double uniform(uint64_t bits) {
+  return static_cast<double>(bits >> 11) * 0x1p-53;
+}
 
 /// Every random number of one pixel in one pass of one mix. Copy freely: 64 bytes, no state.
 class PassSampler {
  public:
-  /// `group`: passes per independently scrambled group (>= 1); stratification spans a group, never two.
+  /// `group`: passes per independently scrambled group, in [1, 2^32]; stratification spans a group, never
+  /// two. The patterns repeat after 2^32 samples of one strategy in one group.
   PassSampler(SamplerKind kind, uint64_t seed, uint32_t mix, TaskKind stage, uint32_t pixel, int64_t pass,
               int64_t group);
 
@@ -36,9 +41,13 @@ class PassSampler {
   double select(int depth, int i) const;
 
  private:
+  /// Sample i of n of this pass, of a stream stratified over the passes of the group.
+  Vec2d square(uint64_t stream, uint64_t i, uint64_t n) const;
+  double segment(uint64_t stream, uint64_t i, uint64_t n) const;
+
   SamplerKind kind_;
-  uint64_t key_;
-  uint64_t pass_in_group_, group_index_, group_size_;
+  uint64_t key_;  ///< of (seed, mix, stage, pixel, group)
+  uint64_t pass_in_group_, group_size_;
 };
 
 }  // namespace penumbra

@@ -1,0 +1,107 @@
+#include "worker/sampling/patterns.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "worker/sampling/hash.h"
+#include "worker/sampling/sampler.h"
+
+namespace penumbra {
+namespace {
+
+/// Uniform integer in [0,size) from 32 random bits, size <= 2^32 (Lemire's multiplication).
+uint64_t scale_down(uint32_t bits, uint64_t size) {
+  return (bits * size) >> 32;
+}
+
+uint32_t reverse_bits(uint32_t x) {
+  x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
+  x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
+  x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
+  return __builtin_bswap32(x);
+}
+
+/// Nested uniform scrambling of a bit-reversed number: each bit is flipped by a hash of the bits below it,
+/// because a multiplication by an even number carries upwards only (Laine & Karras 2011, constants of
+/// Burley 2020, listing 2).
+uint32_t scramble_reversed(uint32_t x, uint32_t seed) {
+  x += seed;
+  x ^= x * 0x6c50b47cu;
+  x ^= x * 0xb82f1e52u;
+  x ^= x * 0xc7afe638u;
+  x ^= x * 0x8d22f6e6u;
+  return x;
+}
+
+/// Second dimension of Sobol's sequence, bit-reversed. Its generator matrix is Pascal's triangle mod 2, and
+/// by Lucas' theorem C(j,i) is odd exactly if the bits of i are among those of j: so bit i of the result is
+/// the parity of the bits j ⊇ i of the index, a sum over supersets, one step per bit of a bit's number.
+uint32_t sobol_second_reversed(uint32_t index) {
+  index ^= (index >> 1) & 0x55555555u;
+  index ^= (index >> 2) & 0x33333333u;
+  index ^= (index >> 4) & 0x0f0f0f0fu;
+  index ^= (index >> 8) & 0x00ff00ffu;
+  index ^= (index >> 16) & 0x0000ffffu;
+  return index;
+}
+
+/// 32 leading bits from the sequence, 21 random ones behind them.
+double to_unit(uint32_t leading, uint64_t trailing) {
+  return uniform((uint64_t{leading} << 32) | (trailing & 0xffffffffu));
+}
+
+}  // namespace
+
+uint64_t permute(uint64_t i, uint64_t size, uint64_t seed) {
+  const uint64_t mask = std::bit_ceil(size) - 1;
+  const int half = (std::bit_width(mask) + 1) / 2;
+  const uint64_t add = seed, flip = seed >> 17, turn = (seed >> 7) | 1, spin = (seed >> 29) | 1;
+  // A bijection of [0, 2^k), repeated until it is back inside [0,size): still a bijection there.
+  do {
+    i = ((i + add) * turn) & mask;
+    i ^= i >> half;
+    i = ((i ^ flip) * spin) & mask;
+    i ^= i >> half;
+    i = (i * 0x2c1b3c6du + add) & mask;
+    i ^= i >> half;
+  } while (i >= size);
+  // The rotation makes the image of every i uniform over the seeds, even for sizes so small that the
+  // bijections above are far from all permutations.
+  i += scale_down(static_cast<uint32_t>(mix64(seed)), size);
+  return i < size ? i : i - size;
+}
+
+Vec2d correlated_multi_jitter(uint64_t stratum, uint64_t size, uint64_t seed) {
+  const uint64_t columns = static_cast<uint64_t>(std::sqrt(static_cast<double>(size)));
+  const uint64_t rows = (size + columns - 1) / columns;
+  const uint64_t column = permute(stratum % columns, columns, child_key(seed, 0));
+  const uint64_t row = permute(stratum / columns, rows, child_key(seed, 1));
+  const uint64_t own = child_key(seed, 4 + 2 * stratum);
+  const double jx = uniform(own), jy = uniform(mix64(own));
+  // Products of integers below 2^53 with jitters below 1, rounded down where they would round up to 1.
+  const double x = (column + (row + jx) / rows) / columns, y = (stratum + jy) / size;
+  return {std::min(x, 1 - 0x1p-53), std::min(y, 1 - 0x1p-53)};
+}
+
+double jitter(uint64_t stratum, uint64_t size, uint64_t seed) {
+  return std::min((stratum + uniform(child_key(seed, stratum))) / size, 1 - 0x1p-53);
+}
+
+Vec2d scrambled_sobol(uint32_t index, uint64_t seed) {
+  const uint64_t seeds = mix64(seed ^ 0x5851f42d4c957f2du);
+  const uint32_t shuffled = reverse_bits(scramble_reversed(reverse_bits(index), static_cast<uint32_t>(seed)));
+  const uint32_t x = reverse_bits(scramble_reversed(shuffled, static_cast<uint32_t>(seeds)));
+  const uint32_t y =
+      reverse_bits(scramble_reversed(sobol_second_reversed(shuffled), static_cast<uint32_t>(seeds >> 32)));
+  const uint64_t trailing = child_key(seed, index);
+  return {to_unit(x, trailing), to_unit(y, trailing >> 32)};
+}
+
+double scrambled_van_der_corput(uint32_t index, uint64_t seed) {
+  const uint32_t shuffled = reverse_bits(scramble_reversed(reverse_bits(index), static_cast<uint32_t>(seed)));
+  const uint32_t x = reverse_bits(scramble_reversed(shuffled, static_cast<uint32_t>(seed >> 32)));
+  return to_unit(x, child_key(seed, index));
+}
+
+}  // namespace penumbra
