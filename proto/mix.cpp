@@ -149,6 +149,16 @@ absl::StatusOr<Mix> parse_mix(std::string_view text) {
   return mix;
 }
 
+absl::Status check_supported(const Mix& mix) {
+  if (mix.automatic) return absl::UnimplementedError("--mix: 'auto' is not in this version");
+  if (mix.combination == Combination::kSmooth)
+    return absl::UnimplementedError("--mix: '/smooth' is not in this version");
+  for (const StrategyCount& s : mix.strategies)
+    if (s.kind == StrategyKind::kLineAnalytic)
+      return absl::UnimplementedError("--mix: 'line-analytic' is not in this version");
+  return absl::OkStatus();
+}
+
 std::string label(const Mix& mix) {
   if (mix.automatic) return "auto";
   std::string out;

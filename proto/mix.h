@@ -46,6 +46,9 @@ struct Mix {
 /// InvalidArgument names the word at fault.
 absl::StatusOr<Mix> parse_mix(std::string_view text);
 
+/// Unimplemented, naming the word, for a mix that parses but that this version cannot render.
+absl::Status check_supported(const Mix& mix);
+
 /// The normal form: counts and combination always written. parse_mix(label(m)) == m.
 std::string label(const Mix& mix);
 

@@ -1,0 +1,212 @@
+#include "proto/convert.h"
+
+#include <set>
+
+#include "proto/convert_check.h"
+
+namespace penumbra {
+
+constexpr int kMostEdge = 65536;
+constexpr int kMostTile = 4096;
+constexpr int kMostMixes = 256;
+constexpr int kMostDepth = 1024;
+constexpr int kMostRegions = 4096;
+
+static v1::SamplerKind to_proto(SamplerKind kind) {
+  switch (kind) {
+    case SamplerKind::kIndependent:
+      return v1::SAMPLER_KIND_INDEPENDENT;
+    case SamplerKind::kStratified:
+      return v1::SAMPLER_KIND_STRATIFIED;
+    case SamplerKind::kSobol:
+      return v1::SAMPLER_KIND_SOBOL;
+  }
+  std::abort();
+}
+
+static absl::StatusOr<SamplerKind> from_proto(v1::SamplerKind kind) {
+  switch (kind) {
+    case v1::SAMPLER_KIND_INDEPENDENT:
+      return SamplerKind::kIndependent;
+    case v1::SAMPLER_KIND_STRATIFIED:
+      return SamplerKind::kStratified;
+    case v1::SAMPLER_KIND_SOBOL:
+      return SamplerKind::kSobol;
+    default:
+      return invalid_input("sampler: unknown value {}", static_cast<int>(kind));
+  }
+}
+
+static v1::Budget to_proto(const Budget& budget) {
+  v1::Budget out;
+  if (const auto* cpu = std::get_if<CpuSecondsBudget>(&budget)) out.set_cpu_seconds(cpu->seconds);
+  if (const auto* spp = std::get_if<SppBudget>(&budget)) out.set_spp(spp->passes);
+  if (const auto* error = std::get_if<TargetErrorBudget>(&budget)) out.set_target_error(error->relmse);
+  return out;
+}
+
+static absl::Status check_positive(std::string_view field, double value) {
+  if (!(value > 0) || !std::isfinite(value))
+    return invalid_input("{}: {} is not a finite number above 0", field, value);
+  return absl::OkStatus();
+}
+
+static absl::StatusOr<Budget> from_proto(const v1::Budget& budget) {
+  switch (budget.kind_case()) {
+    case v1::Budget::kCpuSeconds:
+      RETURN_IF_ERROR(check_positive("budget.cpu_seconds", budget.cpu_seconds()));
+      return CpuSecondsBudget{budget.cpu_seconds()};
+    case v1::Budget::kSpp:
+      RETURN_IF_ERROR(check_range<int64_t>("budget.spp", budget.spp(), 1, kMostPasses));
+      return SppBudget{budget.spp()};
+    case v1::Budget::kTargetError:
+      RETURN_IF_ERROR(check_positive("budget.target_error", budget.target_error()));
+      return TargetErrorBudget{budget.target_error()};
+    default:
+      return invalid_input("budget: none is set");
+  }
+}
+
+static absl::StatusOr<std::vector<Mix>> mixes_from_proto(const v1::JobSpec& spec) {
+  RETURN_IF_ERROR(check_range("mixes", spec.mixes_size(), 1, kMostMixes));
+  std::vector<Mix> mixes;
+  for (const std::string& text : spec.mixes()) {
+    RETURN_IF_ERROR(check_text("mixes", text));
+    ASSIGN_OR_RETURN(Mix mix, parse_mix(text));
+    mixes.push_back(std::move(mix));
+  }
+  return mixes;
+}
+
+static absl::StatusOr<std::vector<Region>> regions_from_proto(const v1::JobSpec& spec) {
+  RETURN_IF_ERROR(check_range("regions", spec.regions_size(), 0, kMostRegions));
+  std::vector<Region> regions;
+  for (const v1::Region& region : spec.regions()) {
+    RETURN_IF_ERROR(check_text("regions.name", region.name()));
+    ASSIGN_OR_RETURN(const PixelRect rect, from_proto(region.rect()));
+    regions.push_back({region.name(), rect});
+  }
+  return regions;
+}
+
+/// Edges and counts that must agree with each other.
+static absl::Status check_spec(const JobSpec& spec) {
+  RETURN_IF_ERROR(check_range("width", spec.width, 1, kMostEdge));
+  RETURN_IF_ERROR(check_range("height", spec.height, 1, kMostEdge));
+  RETURN_IF_ERROR(check_range("tile", spec.tile, 1, kMostTile));
+  RETURN_IF_ERROR(check_range("max_depth", spec.max_depth, 1, kMostDepth));
+  if (spec.crop.area() == 0 || spec.crop.x1 > spec.width || spec.crop.y1 > spec.height)
+    return invalid_input("crop: empty, or not inside the image");
+  if (!spec.plan.empty() && spec.plan.size() != spec.mixes.size())
+    return invalid_input("plan: {} counts for {} mixes", spec.plan.size(), spec.mixes.size());
+  if (!is_digest(spec.bundle)) return invalid_input("bundle: '{:.80}' is not a digest", spec.bundle);
+  return absl::OkStatus();
+}
+
+bool is_digest(std::string_view text) {
+  return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+v1::PixelRect to_proto(const PixelRect& rect) {
+  v1::PixelRect out;
+  out.set_x0(rect.x0);
+  out.set_y0(rect.y0);
+  out.set_x1(rect.x1);
+  out.set_y1(rect.y1);
+  return out;
+}
+
+absl::StatusOr<PixelRect> from_proto(const v1::PixelRect& rect) {
+  for (const int edge : {rect.x0(), rect.y0(), rect.x1(), rect.y1()})
+    RETURN_IF_ERROR(check_range("rect", edge, 0, kMostEdge));
+  if (rect.x1() < rect.x0() || rect.y1() < rect.y0())
+    return invalid_input("rect: [{},{})x[{},{}) is inside out", rect.x0(), rect.x1(), rect.y0(), rect.y1());
+  return PixelRect{rect.x0(), rect.y0(), rect.x1(), rect.y1()};
+}
+
+v1::JobSpec to_proto(const JobSpec& spec) {
+  v1::JobSpec out;
+  out.set_scene(spec.scene);
+  out.set_bundle(spec.bundle);
+  for (const Mix& mix : spec.mixes) out.add_mixes(label(mix));
+  *out.mutable_budget() = to_proto(spec.budget);
+  out.set_sampler(to_proto(spec.sampler));
+  out.set_width(spec.width);
+  out.set_height(spec.height);
+  *out.mutable_crop() = to_proto(spec.crop);
+  out.set_max_depth(spec.max_depth);
+  out.set_tile(spec.tile);
+  out.set_seed(spec.seed);
+  out.set_strict(spec.strict);
+  out.mutable_plan()->Add(spec.plan.begin(), spec.plan.end());
+  out.set_reference(spec.reference);
+  for (const Region& region : spec.regions) {
+    v1::Region* added = out.add_regions();
+    added->set_name(region.name);
+    *added->mutable_rect() = to_proto(region.rect);
+  }
+  return out;
+}
+
+absl::StatusOr<JobSpec> from_proto(const v1::JobSpec& message) {
+  JobSpec spec;
+  RETURN_IF_ERROR(check_text("scene", message.scene()));
+  RETURN_IF_ERROR(check_text("reference", message.reference()));
+  spec.scene = message.scene();
+  spec.bundle = message.bundle();
+  ASSIGN_OR_RETURN(spec.mixes, mixes_from_proto(message));
+  ASSIGN_OR_RETURN(spec.budget, from_proto(message.budget()));
+  ASSIGN_OR_RETURN(spec.sampler, from_proto(message.sampler()));
+  spec.width = message.width();
+  spec.height = message.height();
+  ASSIGN_OR_RETURN(spec.crop, from_proto(message.crop()));
+  spec.max_depth = message.max_depth();
+  spec.tile = message.tile();
+  spec.seed = message.seed();
+  spec.strict = message.strict();
+  ASSIGN_OR_RETURN(spec.plan, passes_from_proto("plan", message.plan()));
+  spec.reference = message.reference();
+  ASSIGN_OR_RETURN(spec.regions, regions_from_proto(message));
+  RETURN_IF_ERROR(check_spec(spec));
+  return spec;
+}
+
+v1::TileTask to_proto(const TileTask& task) {
+  v1::TileTask out;
+  out.set_id(task.id);
+  out.set_kind(task.kind == TaskKind::kPilot ? v1::TASK_KIND_PILOT : v1::TASK_KIND_RUN);
+  *out.mutable_tile() = to_proto(task.tile);
+  for (const PassRange& range : task.passes) {
+    v1::PassRange* added = out.add_passes();
+    added->set_begin(range.begin);
+    added->set_end(range.end);
+  }
+  out.set_group(task.group);
+  out.set_shuffle(task.shuffle);
+  out.set_pilot_seconds(task.pilot_seconds);
+  return out;
+}
+
+absl::StatusOr<TileTask> from_proto(const v1::TileTask& message) {
+  TileTask task;
+  task.id = message.id();
+  if (message.kind() != v1::TASK_KIND_PILOT && message.kind() != v1::TASK_KIND_RUN)
+    return invalid_input("kind: unknown value {}", static_cast<int>(message.kind()));
+  task.kind = message.kind() == v1::TASK_KIND_PILOT ? TaskKind::kPilot : TaskKind::kRun;
+  ASSIGN_OR_RETURN(task.tile, from_proto(message.tile()));
+  if (task.tile.area() == 0) return invalid_input("tile: empty");
+  RETURN_IF_ERROR(check_range("passes", message.passes_size(), 1, kMostMixes));
+  for (const v1::PassRange& range : message.passes()) {
+    RETURN_IF_ERROR(check_range<int64_t>("passes.begin", range.begin(), 0, kMostPasses));
+    RETURN_IF_ERROR(check_range<int64_t>("passes.end", range.end(), range.begin(), kMostPasses));
+    task.passes.push_back({range.begin(), range.end()});
+  }
+  RETURN_IF_ERROR(check_range<int64_t>("group", message.group(), 1, kMostPasses));
+  task.group = message.group();
+  task.shuffle = message.shuffle();
+  RETURN_IF_ERROR(check_amount("pilot_seconds", message.pilot_seconds()));
+  task.pilot_seconds = message.pilot_seconds();
+  return task;
+}
+
+}  // namespace penumbra

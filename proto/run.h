@@ -1,0 +1,89 @@
+#pragma once
+// What a job says about itself: where it stands, and what came of it. The same as the messages of
+// proto/render.proto; the comments there give the full meaning of each figure.
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "proto/job.h"
+
+namespace penumbra {
+
+/// Short, printable, without blanks.
+using JobId = std::string;
+
+enum class JobState { kQueued, kPilot, kRunning, kDone, kFailed, kCancelled };
+
+/// True for the states that never change again.
+inline bool is_final(JobState state) {
+  return state >= JobState::kDone;
+}
+/// One lower-case word: "queued", "pilot", …
+std::string_view name_of(JobState state);
+
+/// Whose fault a failure is: decides the exit code (2 or 1).
+enum class FailureKind { kNone, kBadInput, kJobFailed };
+
+struct JobStatus {
+  JobId job;
+  JobState state = JobState::kQueued;
+  FailureKind failure = FailureKind::kNone;
+  std::string message;  ///< one line for people
+  double fraction = 0;  ///< of the pilot's tasks, then of the run's pixel-passes; 0 to 1
+  uint64_t tasks_done = 0, tasks_total = 0, tasks_leased = 0;
+  double cpu_seconds = 0;  ///< accepted run tasks, all mixes
+  double pilot_cpu_seconds = 0;
+  std::vector<int64_t> plan;   ///< passes per mix; empty until planned
+  double wall_seconds = 0;     ///< since the first run task was leased
+  int workers = 0, cores = 0;  ///< connected
+  uint64_t retries = 0;        ///< leases that were given out again
+  std::string scene;
+  double submitted_unix_seconds = 0;
+  bool operator==(const JobStatus&) const = default;
+};
+
+/// All tiles have finished the same pass of a mix.
+struct Checkpoint {
+  int64_t passes = 0;
+  double cpu_seconds = 0;  ///< of this mix, cumulative
+  bool operator==(const Checkpoint&) const = default;
+};
+
+struct MixSummary {
+  Mix mix;
+  int64_t planned_passes = 0;
+  int64_t passes = 0;  ///< done in every pixel
+  double cpu_seconds = 0;
+  uint64_t rays = 0, line_queries = 0, non_finite = 0;
+  double pilot_cpu_seconds = 0;
+  std::vector<std::string> substitutions;
+  std::vector<Checkpoint> checkpoints;  ///< reached by every tile, ascending
+  bool operator==(const MixSummary&) const = default;
+};
+
+struct TileRow {
+  PixelRect rect;
+  int mix = 0;
+  int64_t passes = 0;
+  double cpu_seconds = 0;
+  std::string worker;
+  bool operator==(const TileRow&) const = default;
+};
+
+/// Everything about a run that is not a pixel.
+struct RunSummary {
+  JobStatus status;
+  JobSpec spec;
+  std::vector<MixSummary> mixes;
+  std::vector<TileRow> tiles;
+  std::vector<WorkerInfo> workers;
+  LoadReport load;
+  double worker_cpu_seconds = 0;
+  double render_wall_seconds = 0;
+  double total_wall_seconds = 0;
+  double first_result_seconds = 0;
+  bool operator==(const RunSummary&) const = default;
+};
+
+}  // namespace penumbra
