@@ -2,11 +2,8 @@
 // A finished picture with what is known of its noise: what an EXR file holds, and what the server hands
 // to the client.
 #include <cstdint>
-#include <string>
-#include <string_view>
 #include <vector>
 
-#include "absl/status/statusor.h"
 #include "proto/job.h"
 
 namespace penumbra {
@@ -28,18 +25,12 @@ struct FilmImage {
   }
 };
 
-/// Largest images that are read or accepted; above it is a lying header, not a picture.
+/// Largest images that are read; above it there is a lying header, not a picture.
 inline constexpr int kMostImageEdge = 1 << 16;
 inline constexpr int64_t kMostImagePixels = int64_t{1} << 27;
 
 /// Common part of two rectangles; of zero width or height (never negative) where they do not meet.
 PixelRect intersect(const PixelRect& a, const PixelRect& b);
 bool contains(const PixelRect& outer, const PixelRect& inner);
-
-/// Bytes of an image, little-endian: `PNIM`, version u32, width height x0 y0 x1 y1 i32, layers u32 (bit 0
-/// rgb, 1 variance, 2 samples, 3 cost), then the float arrays of those layers.
-std::string serialize(const FilmImage& image);
-/// InvalidArgument for bytes that are not an image or whose shapes disagree.
-absl::StatusOr<FilmImage> parse_film_image(std::string_view bytes);
 
 }  // namespace penumbra

@@ -1,0 +1,148 @@
+#include "film/metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <vector>
+
+#include "proto/status.h"
+
+namespace penumbra {
+namespace {
+
+constexpr double kConfidence = 0.95;
+constexpr double kTrimmedShare = 1e-3;
+constexpr int kResamples = 2000;
+constexpr uint64_t kSeed = 0x70656e756d627261;  // "penumbra"
+
+/// SplitMix64 (Steele, Lea & Flood 2014): a stream good enough to draw blocks.
+class SplitMix {
+ public:
+  uint64_t next() {
+    uint64_t z = state_ += 0x9e3779b97f4a7c15;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
+    return z ^ (z >> 31);
+  }
+  /// Uniform in [0, n), n < 2^32; biased by less than n / 2^32.
+  size_t below(size_t n) { return static_cast<size_t>((next() >> 32) * n >> 32); }
+
+ private:
+  uint64_t state_ = kSeed;
+};
+
+struct BlockError {
+  double sum = 0;  ///< of the pixels' errors
+  double pixels = 0;
+};
+
+/// Percentile interval of the ratio sum / pixels under resampling of whole blocks.
+std::optional<Interval> bootstrap(const std::vector<BlockError>& blocks) {
+  if (blocks.size() < 2) return std::nullopt;
+  SplitMix random;
+  std::vector<double> means;
+  means.reserve(kResamples);
+  for (int r = 0; r < kResamples; ++r) {
+    BlockError total;
+    for (size_t i = 0; i < blocks.size(); ++i) {
+      const BlockError& drawn = blocks[random.below(blocks.size())];
+      total.sum += drawn.sum;
+      total.pixels += drawn.pixels;
+    }
+    means.push_back(total.sum / total.pixels);
+  }
+  std::sort(means.begin(), means.end());
+  const auto at = [&](double p) { return means[static_cast<size_t>(std::lround(p * (kResamples - 1)))]; };
+  return Interval{at((1 - kConfidence) / 2), at((1 + kConfidence) / 2)};
+}
+
+/// Mean of the values but for the largest `share` of them (at least one is kept).
+double trimmed_mean(std::vector<double> values, double share) {
+  const auto dropped = static_cast<size_t>(share * static_cast<double>(values.size()));
+  const auto kept = static_cast<std::ptrdiff_t>(values.size() - dropped);
+  if (dropped > 0) std::nth_element(values.begin(), values.begin() + kept - 1, values.end());
+  return std::accumulate(values.begin(), values.begin() + kept, 0.0) / static_cast<double>(kept);
+}
+
+absl::Status check_finite(const FilmImage& image, const PixelRect& region, const char* which) {
+  int64_t bad = 0;
+  int bad_x = 0, bad_y = 0;
+  for (int y = region.y0; y < region.y1; ++y)
+    for (int x = region.x0; x < region.x1; ++x) {
+      const float* v = &image.rgb[3 * image.index(x, y)];
+      if (std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2])) continue;
+      if (bad++ == 0) bad_x = x, bad_y = y;
+    }
+  if (bad == 0) return absl::OkStatus();
+  return invalid_input("{} has {} pixels that are not finite, the first at {},{}", which, bad, bad_x, bad_y);
+}
+
+absl::Status check_region(const FilmImage& image, const FilmImage& reference, const PixelRect& region) {
+  if (image.width != reference.width || image.height != reference.height)
+    return invalid_input("the image is {}x{}, the reference {}x{}", image.width, image.height,
+                         reference.width, reference.height);
+  const auto text = [](const PixelRect& r) { return fmt::format("{},{},{},{}", r.x0, r.y0, r.x1, r.y1); };
+  if (region.x0 >= region.x1 || region.y0 >= region.y1)
+    return invalid_input("region {} is empty", text(region));
+  if (!contains(image.window, region))
+    return invalid_input("region {} is not in the image, which covers {}", text(region), text(image.window));
+  if (!contains(reference.window, region))
+    return invalid_input("region {} is not in the reference, which covers {}", text(region),
+                         text(reference.window));
+  RETURN_IF_ERROR(check_finite(image, region, "the image"));
+  return check_finite(reference, region, "the reference");
+}
+
+/// What one pixel adds, channels averaged.
+struct PixelError {
+  double relative = 0, squared = 0, floor = 0;
+};
+
+PixelError pixel_error(const FilmImage& image, const FilmImage& reference, int x, int y, double epsilon) {
+  PixelError e;
+  const size_t i = 3 * image.index(x, y), j = 3 * reference.index(x, y);
+  for (size_t c = 0; c < 3; ++c) {
+    const double r = reference.rgb[j + c], d = image.rgb[i + c] - r, scale = r * r + epsilon;
+    e.relative += d * d / scale / 3;
+    e.squared += d * d / 3;
+    if (!reference.variance.empty()) e.floor += reference.variance[j + c] / scale / 3;
+  }
+  return e;
+}
+
+}  // namespace
+
+absl::StatusOr<ErrorFigures> compare(const FilmImage& image, const FilmImage& reference,
+                                     std::optional<PixelRect> region, double epsilon) {
+  PENUMBRA_CHECK(epsilon > 0);
+  ErrorFigures figures;
+  figures.region = region.value_or(image.window);
+  RETURN_IF_ERROR(check_region(image, reference, figures.region));
+  std::vector<BlockError> block_errors;
+  std::vector<double> relative;
+  PixelError total;
+  for (const PixelRect& rect : block_grid(figures.region)) {
+    BlockError block;
+    for (int y = rect.y0; y < rect.y1; ++y)
+      for (int x = rect.x0; x < rect.x1; ++x) {
+        const PixelError e = pixel_error(image, reference, x, y, epsilon);
+        relative.push_back(e.relative);
+        block.sum += e.relative;
+        total.squared += e.squared;
+        total.floor += e.floor;
+      }
+    block.pixels = static_cast<double>(rect.area());
+    total.relative += block.sum;
+    block_errors.push_back(block);
+  }
+  const auto pixels = static_cast<double>(figures.region.area());
+  figures.relmse = total.relative / pixels;
+  figures.mse = total.squared / pixels;
+  if (!reference.variance.empty()) figures.reference_floor = total.floor / pixels;
+  figures.relmse_ci = bootstrap(block_errors);
+  figures.trimmed_relmse = trimmed_mean(std::move(relative), kTrimmedShare);
+  return figures;
+}
+
+}  // namespace penumbra
