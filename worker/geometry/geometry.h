@@ -50,16 +50,17 @@ struct Ray {
 
 struct Hit {
   PrimitiveId id;
-  float distance = 0;       ///< along the ray, in lengths of its direction
-  float u = 0, v = 0;       ///< barycentric: p = (1-u-v) p0 + u p1 + v p2
+  float distance = 0;  ///< along the ray, in lengths of its direction
+  float u = 0, v = 0;  ///< barycentric: p = (1-u-v) p0 + u p1 + v p2
 };
 
 /// A chord a→b seen from x; a and b lie on (or in the plane of) a light's surface.
 struct LineQuery {
-  Vec3f x;                  ///< already moved off its own surface (see SurfacePoint::offset)
+  Vec3f x;  ///< already moved off its own surface (see SurfacePoint::offset)
   Vec3f a, b;
-  PrimitiveId light;        ///< primitives [light.primitive, light.primitive + light_primitives) of
-  uint32_t light_primitives = 0;  ///< light.mesh never hide the chord: they are the light's own (flat) surface
+  PrimitiveId light;  ///< primitives [light.primitive, light.primitive + light_primitives) of
+  uint32_t light_primitives =
+      0;  ///< light.mesh never hide the chord: they are the light's own (flat) surface
 };
 
 /// What line and ray queries cost, for statistics; one per thread.
@@ -75,7 +76,8 @@ class EmbreeScene;
 class Geometry {
  public:
   /// `meshes` not covered by an object are in the world. Builds on `threads` threads.
-  static absl::StatusOr<Geometry> build(std::span<const MeshInput> meshes, std::span<const ObjectInput> objects,
+  static absl::StatusOr<Geometry> build(std::span<const MeshInput> meshes,
+                                        std::span<const ObjectInput> objects,
                                         std::span<const InstanceInput> instances, int threads);
   Geometry(Geometry&&) noexcept;
   Geometry& operator=(Geometry&&) noexcept;
@@ -94,9 +96,12 @@ class Geometry {
   /// The visible part of each query's chord as intervals of v in [0,1], P(v) = a + v (b - a); opaque
   /// meshes only. Queries of one call share x (they are traced together where that is faster); the
   /// result of each does not depend on the others. `out` is resized to queries.size().
-  void visible(std::span<const LineQuery> queries, std::vector<IntervalSet>& out, QueryCounters& counters) const;
+  void visible(std::span<const LineQuery> queries, std::vector<IntervalSet>& out,
+               QueryCounters& counters) const;
 
-  struct BuildTimes { double embree_seconds = 0, line_bvh_seconds = 0; };
+  struct BuildTimes {
+    double embree_seconds = 0, line_bvh_seconds = 0;
+  };
   BuildTimes build_times() const;
   /// Of the line BVH, per triangle.
   double line_bytes_per_triangle() const;

@@ -20,6 +20,8 @@ class IntervalSet {
     if (lo < hi) items_.push_back({lo, hi});
   }
   void clear() { items_.clear(); }
+  /// Appends [lo,hi]; lo must not be below what the set ends with. Touching is merged, empty is dropped.
+  void append(float lo, float hi);
   /// Removes [lo,hi]; an empty or reversed interval removes nothing. True if anything went.
   bool subtract(float lo, float hi);
   bool empty() const { return items_.empty(); }
@@ -27,7 +29,9 @@ class IntervalSet {
   const Interval& operator[](size_t i) const { return items_[i]; }
   auto begin() const { return items_.begin(); }
   auto end() const { return items_.end(); }
+  /// Sum of the lengths; in [0,1] for a subset of [0,1].
   float length() const;
+  /// Ends count as inside.
   bool contains(float v) const;
   bool operator==(const IntervalSet&) const = default;
 

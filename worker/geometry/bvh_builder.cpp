@@ -1,0 +1,97 @@
+#include "worker/geometry/bvh_builder.h"
+
+#include <embree3/rtcore.h>
+
+#include <new>
+#include <string>
+
+#include "proto/status.h"
+
+namespace penumbra {
+namespace {
+
+void* create_inner(RTCThreadLocalAllocator allocator, unsigned children, void*) {
+  auto* node = new (rtcThreadLocalAlloc(allocator, sizeof(BuiltInner), alignof(BuiltInner))) BuiltInner;
+  node->count = children;
+  return static_cast<BuiltNode*>(node);
+}
+
+void set_children(void* node, void** children, unsigned count, void*) {
+  auto* inner = static_cast<BuiltInner*>(static_cast<BuiltNode*>(node));
+  for (unsigned i = 0; i < count; ++i) inner->children[i] = static_cast<BuiltNode*>(children[i]);
+}
+
+void set_bounds(void* node, const RTCBounds** bounds, unsigned count, void*) {
+  auto* inner = static_cast<BuiltInner*>(static_cast<BuiltNode*>(node));
+  for (unsigned i = 0; i < count; ++i) {
+    inner->bounds[i] = {{bounds[i]->lower_x, bounds[i]->lower_y, bounds[i]->lower_z},
+                        {bounds[i]->upper_x, bounds[i]->upper_y, bounds[i]->upper_z}};
+  }
+}
+
+void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* items, size_t count, void*) {
+  PENUMBRA_CHECK(count <= kWidth);
+  auto* leaf = new (rtcThreadLocalAlloc(allocator, sizeof(BuiltLeaf), alignof(BuiltLeaf))) BuiltLeaf;
+  leaf->leaf = true;
+  leaf->count = static_cast<uint32_t>(count);
+  for (size_t i = 0; i < count; ++i) leaf->items[i] = items[i].primID;
+  return static_cast<BuiltNode*>(leaf);
+}
+
+std::vector<RTCBuildPrimitive> primitives_of(std::span<const Box> boxes) {
+  std::vector<RTCBuildPrimitive> primitives(boxes.size());
+  for (size_t i = 0; i < boxes.size(); ++i) {
+    const Box& b = boxes[i];
+    primitives[i] = {b.lo.x, b.lo.y, b.lo.z, 0, b.hi.x, b.hi.y, b.hi.z, static_cast<uint32_t>(i)};
+  }
+  return primitives;
+}
+
+struct BvhDeleter {
+  void operator()(RTCBVHTy* bvh) const { rtcReleaseBVH(bvh); }
+};
+
+}  // namespace
+
+struct TreeBuilder::Device {
+  RTCDevice handle;
+  ~Device() { rtcReleaseDevice(handle); }
+};
+
+TreeBuilder::TreeBuilder(int threads)
+    : device_(new Device{rtcNewDevice(("threads=" + std::to_string(threads)).c_str())}) {
+  PENUMBRA_CHECK(device_->handle != nullptr);
+}
+
+TreeBuilder::~TreeBuilder() = default;
+
+absl::Status TreeBuilder::build(std::span<const Box> boxes, int leaf_size,
+                                const std::function<void(const BuiltNode&)>& use) const {
+  const std::unique_ptr<RTCBVHTy, BvhDeleter> bvh(rtcNewBVH(device_->handle));
+  std::vector<RTCBuildPrimitive> primitives = primitives_of(boxes);
+
+  RTCBuildArguments arguments = rtcDefaultBuildArguments();
+  arguments.buildQuality = RTC_BUILD_QUALITY_MEDIUM;
+  arguments.maxBranchingFactor = kWidth;
+  arguments.maxDepth = 64;
+  arguments.sahBlockSize = static_cast<unsigned>(leaf_size);
+  arguments.minLeafSize = static_cast<unsigned>(leaf_size);
+  arguments.maxLeafSize = static_cast<unsigned>(leaf_size);
+  arguments.bvh = bvh.get();
+  arguments.primitives = primitives.data();
+  arguments.primitiveCount = primitives.size();
+  arguments.primitiveArrayCapacity = primitives.size();
+  arguments.createNode = create_inner;
+  arguments.setNodeChildren = set_children;
+  arguments.setNodeBounds = set_bounds;
+  arguments.createLeaf = create_leaf;
+  const void* root = rtcBuildBVH(&arguments);
+  if (root == nullptr) {
+    return make_status(absl::StatusCode::kResourceExhausted, "line hierarchy over {} boxes: Embree error {}",
+                       boxes.size(), static_cast<int>(rtcGetDeviceError(device_->handle)));
+  }
+  use(*static_cast<const BuiltNode*>(root));
+  return absl::OkStatus();
+}
+
+}  // namespace penumbra

@@ -1,0 +1,86 @@
+#include "worker/geometry/geometry.h"
+
+#include <chrono>
+
+#include "proto/status.h"
+#include "worker/geometry/embree_scene.h"
+#include "worker/geometry/line_query.h"
+
+namespace penumbra {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+struct Geometry::Parts {
+  std::unique_ptr<EmbreeScene> embree;
+  LineBvh lines;
+  LinePath path = widest_line_path();
+  BuildTimes times;
+};
+
+Geometry::Geometry() : parts_(std::make_unique<Parts>()) {}
+Geometry::Geometry(Geometry&&) noexcept = default;
+Geometry& Geometry::operator=(Geometry&&) noexcept = default;
+Geometry::~Geometry() = default;
+
+absl::StatusOr<Geometry> Geometry::build(std::span<const MeshInput> meshes,
+                                         std::span<const ObjectInput> objects,
+                                         std::span<const InstanceInput> instances, int threads) {
+  PENUMBRA_CHECK(threads > 0);
+  Geometry geometry;
+  auto start = std::chrono::steady_clock::now();
+  ASSIGN_OR_RETURN(geometry.parts_->embree, EmbreeScene::build(meshes, objects, instances, threads));
+  geometry.parts_->times.embree_seconds = seconds_since(start);
+  start = std::chrono::steady_clock::now();
+  ASSIGN_OR_RETURN(geometry.parts_->lines, build_line_bvh(meshes, objects, instances, threads));
+  geometry.parts_->times.line_bvh_seconds = seconds_since(start);
+  return geometry;
+}
+
+std::optional<Hit> Geometry::intersect(const Ray& ray, QueryCounters& counters) const {
+  ++counters.rays;
+  return parts_->embree->intersect(ray);
+}
+
+bool Geometry::occluded(const Vec3f& x, const Vec3f& y, QueryCounters& counters) const {
+  ++counters.rays;
+  return parts_->embree->occluded(x, y);
+}
+
+bool Geometry::occluded_by_alpha(const Vec3f& x, const Vec3f& y, QueryCounters& counters) const {
+  if (!parts_->embree->has_alpha()) return false;
+  ++counters.rays;
+  return parts_->embree->occluded_by_alpha(x, y);
+}
+
+bool Geometry::has_alpha() const {
+  return parts_->embree->has_alpha();
+}
+
+void Geometry::visible(std::span<const LineQuery> queries, std::vector<IntervalSet>& out,
+                       QueryCounters& counters) const {
+  visible_lines(parts_->lines, parts_->path, queries, out, counters);
+}
+
+Geometry::BuildTimes Geometry::build_times() const {
+  return parts_->times;
+}
+
+double Geometry::line_bytes_per_triangle() const {
+  const size_t triangles = parts_->lines.triangles();
+  return triangles == 0 ? 0 : static_cast<double>(parts_->lines.bytes()) / static_cast<double>(triangles);
+}
+
+void Geometry::bounds(Vec3f& lo, Vec3f& hi) const {
+  parts_->embree->bounds(lo, hi);
+}
+
+const char* Geometry::isa() const {
+  return name_of(parts_->path);
+}
+
+}  // namespace penumbra

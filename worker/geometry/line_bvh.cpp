@@ -1,0 +1,245 @@
+#include "worker/geometry/line_bvh.h"
+
+#include <cmath>
+
+#include "proto/status.h"
+#include "worker/geometry/bvh_builder.h"
+
+namespace penumbra {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+void extend(Box& box, const Vec3f& p) {
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = std::min(box.lo[k], p[k]);
+    box.hi[k] = std::max(box.hi[k], p[k]);
+  }
+}
+
+constexpr Box empty_box() {
+  return {Vec3f(kInfinity, kInfinity, kInfinity), -Vec3f(kInfinity, kInfinity, kInfinity)};
+}
+
+/// The triangles of some meshes, by a number of their own.
+struct TriangleList {
+  struct Item {
+    const TriangleMesh* mesh;
+    uint32_t primitive, id;
+  };
+  std::vector<Item> items;
+  std::vector<Box> boxes;
+
+  void add(const TriangleMesh& mesh, uint32_t first_id) {
+    for (uint32_t i = 0; i < mesh.triangles(); ++i) {
+      Box box = empty_box();
+      for (int c = 0; c < 3; ++c) extend(box, mesh.positions[mesh.indices[3 * size_t{i} + c]]);
+      items.push_back({&mesh, i, first_id + i});
+      boxes.push_back(box);
+    }
+  }
+};
+
+TriangleBlock block_of(const BuiltLeaf& leaf, const TriangleList& list) {
+  TriangleBlock block;
+  for (uint32_t lane = 0; lane < kWidth; ++lane) {
+    const auto& item = list.items[leaf.items[lane < leaf.count ? lane : 0]];
+    block.id[lane] = item.id;
+    for (int c = 0; c < 3; ++c) {
+      const Vec3f& p = item.mesh->positions[item.mesh->indices[3 * size_t{item.primitive} + c]];
+      for (int k = 0; k < 3; ++k) block.p[c][k][lane] = p[k];
+    }
+  }
+  return block;
+}
+
+/// Copies a built tree into arrays, depth first; leaves become blocks of triangles, or instances.
+class Flattener {
+ public:
+  Flattener(LineTree& tree, const TriangleList* triangles) : tree_(tree), triangles_(triangles) {}
+
+  void root(const BuiltNode& node, const Box& bounds) {
+    for (int k = 0; k < 3; ++k) tree_.centre[k] = 0.5 * (double{bounds.lo[k]} + bounds.hi[k]);
+    tree_.radius = 0.5 * (Vec3d(bounds.hi) - Vec3d(bounds.lo)).length();
+    if (!node.leaf) {
+      inner(static_cast<const BuiltInner&>(node), 1);
+      return;
+    }
+    BuiltInner single;
+    single.count = 1;
+    single.children[0] = const_cast<BuiltNode*>(&node);
+    single.bounds[0] = bounds;
+    inner(single, 1);
+  }
+
+ private:
+  uint32_t inner(const BuiltInner& built, uint32_t depth) {
+    tree_.depth = std::max(tree_.depth, depth);
+    const auto index = static_cast<uint32_t>(tree_.nodes.size());
+    tree_.nodes.emplace_back();
+    LineNode node;
+    for (int lane = 0; lane < kWidth; ++lane) set_bounds(node, lane, empty_box());
+    for (uint32_t lane = 0; lane < built.count; ++lane) {
+      set_bounds(node, static_cast<int>(lane), built.bounds[lane]);
+      const BuiltNode& child = *built.children[lane];
+      if (child.leaf) node.leaves |= 1u << lane;
+      node.child[lane] = child.leaf ? leaf(static_cast<const BuiltLeaf&>(child))
+                                    : inner(static_cast<const BuiltInner&>(child), depth + 1);
+    }
+    for (uint32_t lane = built.count; lane < kWidth; ++lane) node.child[lane] = 0;
+    tree_.nodes[index] = node;
+    return index;
+  }
+
+  uint32_t leaf(const BuiltLeaf& built) {
+    if (triangles_ == nullptr) return built.items[0];
+    tree_.blocks.push_back(block_of(built, *triangles_));
+    tree_.triangles += built.count;
+    return static_cast<uint32_t>(tree_.blocks.size() - 1);
+  }
+
+  void set_bounds(LineNode& node, int lane, const Box& box) const {
+    for (int k = 0; k < 3; ++k) {
+      const double lo = box.lo[k] - tree_.centre[k], hi = box.hi[k] - tree_.centre[k];
+      node.lo[k][lane] = std::nextafter(static_cast<float>(lo), -kInfinity);
+      node.hi[k][lane] = std::nextafter(static_cast<float>(hi), kInfinity);
+    }
+  }
+
+  LineTree& tree_;
+  const TriangleList* triangles_;
+};
+
+Box bounds_of(std::span<const Box> boxes) {
+  Box all = empty_box();
+  for (const Box& b : boxes) {
+    extend(all, b.lo);
+    extend(all, b.hi);
+  }
+  return all;
+}
+
+absl::StatusOr<LineTree> build_tree(std::span<const Box> boxes, const TriangleList* triangles,
+                                    const TreeBuilder& builder) {
+  LineTree tree;
+  if (boxes.empty()) return tree;
+  const int leaf_size = triangles == nullptr ? 1 : kWidth;
+  RETURN_IF_ERROR(builder.build(boxes, leaf_size, [&](const BuiltNode& root) {
+    Flattener(tree, triangles).root(root, bounds_of(boxes));
+  }));
+  return tree;
+}
+
+bool seen_by_lines(const MeshInput& input) {
+  return input.visible && !input.alpha;
+}
+
+/// Which meshes belong to some object, and are therefore not in the world themselves.
+std::vector<bool> meshes_of_objects(size_t meshes, std::span<const ObjectInput> objects) {
+  std::vector<bool> in_object(meshes, false);
+  for (const ObjectInput& o : objects) {
+    PENUMBRA_CHECK(o.first_mesh <= o.last_mesh && o.last_mesh <= meshes);
+    for (uint32_t m = o.first_mesh; m < o.last_mesh; ++m) in_object[m] = true;
+  }
+  return in_object;
+}
+
+/// World bounds of a placed object, from the corners of its own.
+Box placed_bounds(const LineTree& tree, const Matrix& to_world) {
+  Box box = empty_box();
+  const LineNode& root = tree.nodes[0];
+  Vec3d lo(kInfinity, kInfinity, kInfinity), hi(-lo);
+  for (int lane = 0; lane < kWidth; ++lane) {
+    for (int k = 0; k < 3; ++k) {
+      if (root.lo[k][lane] > root.hi[k][lane]) continue;
+      lo[k] = std::min(lo[k], tree.centre[k] + root.lo[k][lane]);
+      hi[k] = std::max(hi[k], tree.centre[k] + root.hi[k][lane]);
+    }
+  }
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3d p(corner & 1 ? hi.x : lo.x, corner & 2 ? hi.y : lo.y, corner & 4 ? hi.z : lo.z);
+    Vec3d w;
+    to_world.multVecMatrix(p, w);
+    for (int k = 0; k < 3; ++k) {
+      box.lo[k] = std::min(box.lo[k], std::nextafter(static_cast<float>(w[k]), -kInfinity));
+      box.hi[k] = std::max(box.hi[k], std::nextafter(static_cast<float>(w[k]), kInfinity));
+    }
+  }
+  return box;
+}
+
+absl::Status place_instances(LineBvh& bvh, std::span<const InstanceInput> instances,
+                             const TreeBuilder& builder) {
+  std::vector<Box> boxes;
+  std::vector<uint32_t> numbers;
+  bvh.instances.resize(instances.size());
+  for (size_t i = 0; i < instances.size(); ++i) {
+    PENUMBRA_CHECK(instances[i].object < bvh.objects.size());
+    const Matrix& m = instances[i].to_world;
+    const double det = m.determinant();
+    if (!std::isfinite(det) || det == 0) return invalid_input("instance {}: its transform is singular", i);
+    bvh.instances[i] = {instances[i].object, m.inverse()};
+    const LineTree& tree = bvh.objects[instances[i].object];
+    if (tree.nodes.empty()) continue;
+    boxes.push_back(placed_bounds(tree, m));
+    numbers.push_back(static_cast<uint32_t>(i));
+  }
+  ASSIGN_OR_RETURN(bvh.instance_tree, build_tree(boxes, nullptr, builder));
+  for (LineNode& node : bvh.instance_tree.nodes) {
+    for (int lane = 0; lane < kWidth; ++lane) {
+      if (node.leaves >> lane & 1) node.child[lane] = numbers[node.child[lane]];
+    }
+  }
+  return absl::OkStatus();
+}
+
+size_t bytes_of(const LineTree& tree) {
+  return tree.nodes.size() * sizeof(LineNode) + tree.blocks.size() * sizeof(TriangleBlock);
+}
+
+}  // namespace
+
+absl::StatusOr<LineBvh> build_line_bvh(std::span<const MeshInput> meshes,
+                                       std::span<const ObjectInput> objects,
+                                       std::span<const InstanceInput> instances, int threads) {
+  const TreeBuilder builder(threads);
+  LineBvh bvh;
+  uint64_t first = 0;
+  for (const MeshInput& m : meshes) {
+    bvh.first_triangle.push_back(static_cast<uint32_t>(first));
+    first += m.mesh->triangles();
+    if (first >= kNone) {
+      return make_status(absl::StatusCode::kResourceExhausted, "more than {} triangles in one scene", kNone);
+    }
+  }
+  const auto tree_over = [&](auto belongs) {
+    TriangleList list;
+    for (size_t m = 0; m < meshes.size(); ++m) {
+      if (belongs(m) && seen_by_lines(meshes[m])) list.add(*meshes[m].mesh, bvh.first_triangle[m]);
+    }
+    return build_tree(list.boxes, &list, builder);
+  };
+  const std::vector<bool> in_object = meshes_of_objects(meshes.size(), objects);
+  ASSIGN_OR_RETURN(bvh.world, tree_over([&](size_t m) { return !in_object[m]; }));
+  for (const ObjectInput& o : objects) {
+    ASSIGN_OR_RETURN(LineTree tree,
+                     tree_over([&](size_t m) { return m >= o.first_mesh && m < o.last_mesh; }));
+    bvh.objects.push_back(std::move(tree));
+  }
+  RETURN_IF_ERROR(place_instances(bvh, instances, builder));
+  return bvh;
+}
+
+size_t LineBvh::bytes() const {
+  size_t sum = bytes_of(world) + bytes_of(instance_tree) + instances.size() * sizeof(LineInstance);
+  for (const LineTree& tree : objects) sum += bytes_of(tree);
+  return sum;
+}
+
+size_t LineBvh::triangles() const {
+  size_t sum = world.triangles;
+  for (const LineTree& tree : objects) sum += tree.triangles;
+  return sum;
+}
+
+}  // namespace penumbra

@@ -1,0 +1,73 @@
+#pragma once
+// The hierarchy that line queries walk: 16-wide nodes over blocks of 16 triangles, one layout for every
+// instruction set, so that all of them visit the same boxes in the same order.
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "worker/geometry/aligned.h"
+#include "worker/geometry/geometry.h"
+#include "worker/geometry/line_fan.h"
+
+namespace penumbra {
+
+constexpr int kWidth = 16;
+
+struct Box {
+  Vec3f lo, hi;
+};
+
+/// Bounds of 16 children, relative to the tree's centre and rounded outwards; unused lanes are empty boxes.
+struct alignas(64) LineNode {
+  float lo[3][kWidth], hi[3][kWidth];
+  uint32_t child[kWidth];  ///< of a leaf: its block (or instance); else a node
+  uint32_t leaves = 0;     ///< bit k: child k is a leaf
+};
+
+/// 16 triangles as the scene has them; unused lanes repeat the first one, which changes no union.
+struct alignas(64) TriangleBlock {
+  float p[3][3][kWidth];  ///< [vertex][axis]
+  uint32_t id[kWidth];    ///< index of the triangle in LineBvh::first_triangle's numbering
+};
+
+/// A tree in its own coordinates: of the world's meshes, of one object's, or of the instances.
+struct LineTree {
+  AlignedVector<LineNode> nodes;  ///< [0] is the root; empty: nothing here
+  AlignedVector<TriangleBlock> blocks;
+  Vec3d centre;        ///< of its bounds; nodes are relative to it
+  double radius = 0;   ///< |p - centre| of everything inside
+  uint32_t depth = 0;  ///< of nodes on a path
+  size_t triangles = 0;
+
+  /// No vertex is farther from x.
+  double reach(const Vec3d& x) const { return (x - centre).length() + radius; }
+};
+
+/// An object placed in the world.
+struct LineInstance {
+  uint32_t tree = 0;  ///< into LineBvh::objects
+  Matrix to_object;   ///< affine, row vectors
+};
+
+struct LineBvh {
+  LineTree world;
+  std::vector<LineTree> objects;
+  LineTree instance_tree;  ///< leaves are single instances
+  std::vector<LineInstance> instances;
+  std::vector<uint32_t> first_triangle;  ///< of each mesh, in a numbering of all meshes' triangles
+
+  size_t bytes() const;
+  size_t triangles() const;
+};
+
+/// Errors: InvalidArgument for an instance whose transform is singular or not finite, ResourceExhausted
+/// beyond 2^32 triangles.
+absl::StatusOr<LineBvh> build_line_bvh(std::span<const MeshInput> meshes,
+                                       std::span<const ObjectInput> objects,
+                                       std::span<const InstanceInput> instances, int threads);
+
+/// What a query carries from call to call on one thread: buffers only, nothing that changes an answer.
+struct LineWorkspace;
+
+}  // namespace penumbra

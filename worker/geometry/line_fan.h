@@ -1,0 +1,53 @@
+#pragma once
+// The planar fan of segments from x to the chord a→b, set up once per query and tree, and what one
+// triangle hides of it: the definition that every path (scalar, AVX2, AVX-512) follows bit for bit.
+//
+// With A = a-x, B = b-x, N = A×B and q = p-x for a point p, the fan's own coordinates are (numerics:
+// FORMULAS.md §4; derived by solving q = s A + r B for a q in the plane, t = s+r, v = r/(s+r)):
+//   g = N·q                side of the fan's plane
+//   β = (N×A)·q            = r |N|²
+//   t = (N×(A-B))·q        = (s+r) |N|², so t = |N|² on the light's line and 0 at x
+//   v = β/t                where the ray x→p meets the chord
+// Everything is scaled by powers of two only, so that predicates on small dyadic inputs stay exact.
+#include <cstdint>
+#include <limits>
+
+#include "scenes/math.h"
+#include "worker/geometry/intervals.h"
+
+namespace penumbra {
+
+/// Unit roundoff of binary32.
+constexpr double kFloatRoundoff = 0x1p-24;
+
+struct LineFan {
+  // Single precision: what vectors compute with.
+  Vec3f x, g, beta, t;  ///< functionals of p - x
+  float light = 0;      ///< t at which an occluder is no longer in front of the light
+  float near = 0;       ///< |t| below this is decided in double precision (see make_fan)
+
+  // Double precision: the same fan for the few edges that need it.
+  Vec3d x_exact, a, b;  ///< a, b relative to x
+  Vec3d g_exact, beta_exact, t_exact;
+  bool degenerate = true;  ///< x, a and b are collinear: the fan has no area
+};
+
+/// Fan of (x, x+a, x+b) in the coordinates of one tree. `reach`: no vertex is farther from x than this.
+LineFan make_fan(const Vec3d& x, const Vec3d& a, const Vec3d& b, double reach);
+
+/// What triangle p hides: v in [lo,hi], clamped to [0,1]; lo >= hi if nothing. Neighbours that share an
+/// edge answer with the same bits at that edge.
+Interval hidden_by_triangle(const LineFan& fan, const Vec3f p[3]);
+
+/// The same for a triangle that touches t <= near or t >= light, and whose vertices lie on both sides of
+/// the plane: `odd` is the one alone on its side. Shared by all paths.
+Interval hidden_near_ends(const LineFan& fan, const Vec3f p[3], int odd);
+
+/// Ends of what a triangle without such edges hides are clamped and ordered here.
+inline Interval ordered(float v1, float v2) {
+  return {std::max(std::min(v1, v2), 0.f), std::min(std::max(v1, v2), 1.f)};
+}
+constexpr Interval kHidesNothing{std::numeric_limits<float>::infinity(),
+                                 -std::numeric_limits<float>::infinity()};
+
+}  // namespace penumbra
