@@ -119,15 +119,13 @@ Box bounds_of(std::span<const Box> boxes) {
   return all;
 }
 
-absl::StatusOr<LineTree> build_tree(std::span<const Box> boxes, const TriangleList* triangles,
-                                    const TreeBuilder& builder) {
-  LineTree tree;
-  if (boxes.empty()) return tree;
+absl::Status build_tree(std::span<const Box> boxes, const TriangleList* triangles, const TreeBuilder& builder,
+                        LineTree& tree) {
+  if (boxes.empty()) return absl::OkStatus();
   const int leaf_size = triangles == nullptr ? 1 : kWidth;
-  RETURN_IF_ERROR(builder.build(boxes, leaf_size, [&](const BuiltNode& root) {
+  return builder.build(boxes, leaf_size, [&](const BuiltNode& root) {
     Flattener(tree, triangles).root(root, bounds_of(boxes));
-  }));
-  return tree;
+  });
 }
 
 bool seen_by_lines(const MeshInput& input) {
@@ -184,7 +182,7 @@ absl::Status place_instances(LineBvh& bvh, std::span<const InstanceInput> instan
     boxes.push_back(placed_bounds(tree, m));
     numbers.push_back(static_cast<uint32_t>(i));
   }
-  ASSIGN_OR_RETURN(bvh.instance_tree, build_tree(boxes, nullptr, builder));
+  RETURN_IF_ERROR(build_tree(boxes, nullptr, builder, bvh.instance_tree));
   for (LineNode& node : bvh.instance_tree.nodes) {
     for (int lane = 0; lane < kWidth; ++lane) {
       if (node.leaves >> lane & 1) node.child[lane] = numbers[node.child[lane]];
@@ -212,19 +210,20 @@ absl::StatusOr<LineBvh> build_line_bvh(std::span<const MeshInput> meshes,
       return make_status(absl::StatusCode::kResourceExhausted, "more than {} triangles in one scene", kNone);
     }
   }
-  const auto tree_over = [&](auto belongs) {
+  const auto build_over = [&](LineTree& tree, auto belongs) {
     TriangleList list;
     for (size_t m = 0; m < meshes.size(); ++m) {
       if (belongs(m) && seen_by_lines(meshes[m])) list.add(*meshes[m].mesh, bvh.first_triangle[m]);
     }
-    return build_tree(list.boxes, &list, builder);
+    return build_tree(list.boxes, &list, builder, tree);
   };
   const std::vector<bool> in_object = meshes_of_objects(meshes.size(), objects);
-  ASSIGN_OR_RETURN(bvh.world, tree_over([&](size_t m) { return !in_object[m]; }));
-  for (const ObjectInput& o : objects) {
-    ASSIGN_OR_RETURN(LineTree tree,
-                     tree_over([&](size_t m) { return m >= o.first_mesh && m < o.last_mesh; }));
-    bvh.objects.push_back(std::move(tree));
+  RETURN_IF_ERROR(build_over(bvh.world, [&](size_t m) { return !in_object[m]; }));
+  bvh.objects.resize(objects.size());
+  for (size_t i = 0; i < objects.size(); ++i) {
+    const ObjectInput& o = objects[i];
+    RETURN_IF_ERROR(
+        build_over(bvh.objects[i], [&](size_t m) { return m >= o.first_mesh && m < o.last_mesh; }));
   }
   RETURN_IF_ERROR(place_instances(bvh, instances, builder));
   return bvh;
