@@ -1,0 +1,103 @@
+#include "scenes/token_stream.h"
+
+#include "scenes/read_file.h"
+
+namespace penumbra {
+namespace {
+
+constexpr size_t kDeepestInclude = 64;
+// Files that include one another twice each double the text at every level; a scene of such files is an
+// attack or a mistake. Repeating a file instead of instancing it stays possible up to here.
+constexpr uint64_t kMostRepeatedBytes = uint64_t{1} << 30;
+constexpr uint64_t kCostOfOneInclude = 256;  // so that empty files count too
+
+}  // namespace
+
+absl::Status TokenStream::open_main(const std::string& name) {
+  PENUMBRA_CHECK(open_.empty() && diagnostics_.files.empty());
+  const absl::StatusOr<std::string> path = files_.path_of(name);
+  if (!path.ok()) return invalid_input("{}: {}", name, message_of(path.status()));
+  absl::StatusOr<std::string> bytes = read_file(*path);
+  if (!bytes.ok()) return invalid_input("{}: {}", name, message_of(bytes.status()));
+  const auto [entry, fresh] = texts_.emplace(*path, Text{*std::move(bytes), 0});
+  diagnostics_.files.push_back(name);
+  open_.push_back({Lexer(entry->second.bytes, 0), &entry->first});
+  return absl::OkStatus();
+}
+
+absl::StatusOr<const TokenStream::Text*> TokenStream::text_of(const std::string& name,
+                                                              const std::string& path, FileLoc loc) {
+  if (const auto known = texts_.find(path); known != texts_.end()) {
+    repeated_bytes_ += known->second.bytes.size() + kCostOfOneInclude;
+    if (repeated_bytes_ > kMostRepeatedBytes)
+      return diagnostics_.error(loc, "files included again and again add up to more than {} bytes",
+                                kMostRepeatedBytes);
+    return &known->second;
+  }
+  absl::StatusOr<std::string> bytes = read_file(path);
+  if (!bytes.ok())
+    return diagnostics_.error(loc, "cannot include '{}': {}", printable(name), message_of(bytes.status()));
+  const auto file = static_cast<uint32_t>(diagnostics_.files.size());
+  diagnostics_.files.push_back(name);
+  return &texts_.emplace(path, Text{*std::move(bytes), file}).first->second;
+}
+
+absl::Status TokenStream::enter(const std::string& name, FileLoc loc) {
+  if (open_.size() >= kDeepestInclude)
+    return diagnostics_.error(loc, "files are included more than {} deep", kDeepestInclude);
+  const absl::StatusOr<std::string> path = files_.path_of(name);
+  if (!path.ok())
+    return diagnostics_.error(loc, "cannot include '{}': {}", printable(name), message_of(path.status()));
+  for (const Source& source : open_)
+    if (*source.path == *path)
+      return diagnostics_.error(loc, "'{}' includes itself", printable(name));
+  ASSIGN_OR_RETURN(const Text* const text, text_of(name, *path, loc));
+  open_.push_back({Lexer(text->bytes, text->file), &texts_.find(*path)->first});
+  return absl::OkStatus();
+}
+
+Token TokenStream::fail(absl::Status status, FileLoc loc) {
+  status_ = std::move(status);
+  return {Token::Kind::kError, {}, loc};
+}
+
+Token TokenStream::read() {
+  if (!status_.ok()) return {Token::Kind::kError, {}, {}};
+  for (;;) {
+    PENUMBRA_CHECK(!open_.empty());
+    const Token token = open_.back().lexer.next();
+    switch (token.kind) {
+      case Token::Kind::kError:
+        return fail(diagnostics_.error(token.loc, "{}", token.text), token.loc);
+      case Token::Kind::kEnd:
+        if (open_.size() == 1) return token;
+        open_.pop_back();
+        break;
+      case Token::Kind::kWord: {
+        if (token.text != "Include") return token;
+        const Token name = open_.back().lexer.next();
+        if (name.kind != Token::Kind::kString)
+          return fail(diagnostics_.error(token.loc, "Include needs a quoted file name"), token.loc);
+        if (absl::Status status = enter(unescape(name.text), token.loc); !status.ok())
+          return fail(std::move(status), token.loc);
+        break;
+      }
+      default:
+        return token;
+    }
+  }
+}
+
+const Token& TokenStream::peek() {
+  if (!has_peeked_) peeked_ = read();
+  has_peeked_ = true;
+  return peeked_;
+}
+
+Token TokenStream::next() {
+  const Token token = peek();
+  has_peeked_ = token.kind == Token::Kind::kEnd || token.kind == Token::Kind::kError;
+  return token;
+}
+
+}  // namespace penumbra
