@@ -1,0 +1,58 @@
+#pragma once
+// What emits: the closed set of light sources apart from the environment (worker/effects). An area
+// emitter is a shape, its radiance, and the primitives that are its surface; two-sided lights are two
+// emitters back to back, so that every emitter has one side.
+#include <cstdint>
+#include <variant>
+
+#include "scenes/math.h"
+#include "worker/lights/shape.h"
+
+namespace penumbra {
+
+struct AreaEmitter {
+  LightShape shape;
+  Rgb radiance;                  ///< W m⁻² sr⁻¹, constant over the shape
+  uint32_t mesh = 0;             ///< the geometry's mesh that is this light's surface
+  uint32_t first_primitive = 0;  ///< its triangles there
+  uint32_t primitives = 0;
+  /// The triangles are the shape itself (quad, triangle), not a tessellation of it.
+  bool flat = true;
+  /// Its surface is not there for rays (`"float alpha" 0`): a material's direction cannot meet it.
+  bool invisible = false;
+};
+
+/// Unit normal of the emission side at a point of the shape.
+Vec3d emission_normal(const LightShape& shape, const Vec3d& p);
+
+struct PointEmitter {
+  Vec3f position;
+  Rgb intensity;  ///< W sr⁻¹
+};
+
+/// Falls off from full inside cos_inner to nothing outside cos_outer (pbrt-v3 §12.3.1).
+struct SpotEmitter {
+  Vec3f position, axis;  ///< axis unit
+  Rgb intensity;         ///< W sr⁻¹ on the axis
+  float cos_inner = 1, cos_outer = 0;
+};
+
+struct DistantEmitter {
+  Vec3f towards_light;  ///< unit
+  Rgb irradiance;       ///< W m⁻² on a surface that faces it
+};
+
+using DeltaEmitter = std::variant<PointEmitter, SpotEmitter, DistantEmitter>;
+
+/// What arrives at x from a light without extent.
+struct DeltaLight {
+  Vec3f wi;        ///< unit, towards the light
+  Rgb irradiance;  ///< on a surface that faces it, if nothing hides it
+  /// The shadow segment ends here; for a distant light beyond everything.
+  Vec3f end;
+};
+
+/// `reach`: a length that leaves the scene (its diameter).
+DeltaLight delta_light_at(const DeltaEmitter& emitter, const Vec3f& x, float reach);
+
+}  // namespace penumbra

@@ -1,0 +1,29 @@
+#pragma once
+// pbrt's perspective camera: looks along +z of its left-handed space, fov across the shorter axis.
+#include "absl/status/statusor.h"
+#include "scenes/description.h"
+#include "worker/geometry/geometry.h"
+
+namespace penumbra {
+
+/// A camera ray with the directions one pixel to the right and below, for texture footprints.
+struct CameraRay {
+  Vec3f origin, direction;        ///< direction unit
+  Vec3f direction_dx, direction_dy;  ///< unit; origin shared (a pinhole)
+};
+
+class Camera {
+ public:
+  /// For an image of width × height pixels. InvalidArgument for a field of view outside (0,180) or a
+  /// singular placement. Other camera types are rendered as perspective, with a warning from unsupported().
+  static absl::StatusOr<Camera> build(const SceneDescription& description, int width, int height);
+
+  /// Ray through a point of the image, in pixels from the upper left corner.
+  CameraRay ray(const Vec2d& pixel) const;
+
+ private:
+  Vec3f direction_at(const Vec2d& pixel) const;
+  Vec3d origin_, corner_, right_, down_;  ///< world: direction = corner + x right + y down
+};
+
+}  // namespace penumbra

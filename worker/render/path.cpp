@@ -1,0 +1,76 @@
+#include "worker/render/path.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "worker/render/surface.h"
+
+namespace penumbra {
+namespace {
+
+// select(depth, i): light draws use i < LightSet::kMostAsked, the specular choice the next one.
+constexpr int kSpecularChoice = LightSet::kMostAsked;
+
+float largest(const Rgb& c) { return std::max({c.x, c.y, c.z}); }
+
+}  // namespace
+
+Rgb PathTracer::radiance(const CameraRay& camera_ray, const PassSampler& sampler) {
+  Rgb sum(0), throughput(1);
+  Ray ray{camera_ray.origin, camera_ray.direction, 0, std::numeric_limits<float>::infinity()};
+  for (int depth = 0;; ++depth) {
+    const auto hit = scene_.geometry->intersect(ray, counters_);
+    if (!hit) return sum + throughput * background(ray.direction);
+    sum += throughput * emitted(*hit, ray);
+    SurfacePoint surface = surface_at(scene_, *hit, ray.direction);
+    if (scene_.footprints && depth == 0) set_footprint(surface, camera_ray);
+    const Bsdf bsdf = scene_.materials.shade(scene_.meshes[hit->id.mesh].material, surface, scene_.textures);
+    const ShadingPoint point(surface, bsdf);
+    if (bsdf.has_non_specular()) sum += throughput * direct_.estimate(point, sampler, depth);
+    if (depth + 1 >= max_depth_ || bsdf.specular_count() == 0) return sum;
+    Vec3f direction;
+    if (!bounce(point, sampler, depth, direction, throughput)) return sum;
+    ray = {surface.offset(direction), direction, 0, std::numeric_limits<float>::infinity()};
+  }
+}
+
+Rgb PathTracer::emitted(const Hit& hit, const Ray& ray) const {
+  if (scene_.lights.area.empty()) return Rgb(0);
+  const Vec3d p = Vec3d(ray.origin) + Vec3d(ray.direction) * double(hit.distance);
+  const uint32_t emitter = scene_.lights.emitter_at(hit.id, p, ray.direction);
+  return emitter == kNone ? Rgb(0) : scene_.lights.area[emitter].radiance;
+}
+
+Rgb PathTracer::background(const Vec3f& direction) const {
+  Rgb sum(0);
+  for (const Environment& e : scene_.lights.environments) sum += e.radiance(direction);
+  return sum;
+}
+
+bool PathTracer::bounce(const ShadingPoint& point, const PassSampler& sampler, int depth, Vec3f& direction,
+                        Rgb& throughput) const {
+  std::array<BsdfSample, Bsdf::kMostLobes> samples;
+  std::array<float, Bsdf::kMostLobes> weights{};
+  int n = 0;
+  float total = 0;
+  for (int i = 0; i < point.bsdf.specular_count(); ++i) {
+    const auto s = point.bsdf.sample_specular(point.wo, i);
+    if (!s || !(s->pdf > 0)) continue;
+    samples[size_t(n)] = *s;
+    weights[size_t(n)] = largest(s->f) * std::abs(s->wi.dot(point.bsdf.ns())) / float(s->pdf);
+    total += weights[size_t(n++)];
+  }
+  if (!(total > 0)) return false;
+  float target = float(sampler.select(depth, kSpecularChoice)) * total;
+  int chosen = 0;
+  while (chosen + 1 < n && target >= weights[size_t(chosen)]) target -= weights[size_t(chosen++)];
+  const BsdfSample& s = samples[size_t(chosen)];
+  if (!(weights[size_t(chosen)] > 0)) return false;
+  direction = s.wi;
+  const float cosine = std::abs(s.wi.dot(point.bsdf.ns()));
+  throughput *= s.f * (cosine / float(s.pdf) * total / weights[size_t(chosen)]);
+  return true;
+}
+
+}  // namespace penumbra

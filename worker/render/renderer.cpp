@@ -1,0 +1,79 @@
+#include "worker/render/renderer.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <map>
+#include <set>
+
+#include "proto/status.h"
+#include "scenes/needs.h"
+#include "scenes/parser.h"
+#include "worker/render/scene_builder.h"
+
+namespace penumbra {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+const char* shape_name(const LightShape& shape) {
+  struct Name {
+    const char* operator()(const QuadShape& q) const { return q.rectangle() ? "rectangle" : "parallelogram"; }
+    const char* operator()(const TriangleShape&) const { return "triangle"; }
+    const char* operator()(const SphereShape&) const { return "sphere"; }
+    const char* operator()(const DiskShape&) const { return "disk"; }
+    const char* operator()(const CylinderShape&) const { return "cylinder"; }
+  };
+  return std::visit(Name{}, shape);
+}
+
+}  // namespace
+
+void SceneDeleter::operator()(Scene* scene) const { delete scene; }
+
+absl::StatusOr<ScenePtr> load_scene(const std::string& main_name, const SceneFiles& files,
+                                    const LoadOptions& options, LoadReport& report) {
+  const auto start = std::chrono::steady_clock::now();
+  ASSIGN_OR_RETURN(const SceneDescription description, parse_scene(main_name, files));
+  report.parse_seconds = seconds_since(start);
+  return build_scene(description, files, options, report);
+}
+
+absl::StatusOr<ScenePtr> build_scene(const SceneDescription& description, const SceneFiles& files,
+                                     const LoadOptions& options, LoadReport& report) {
+  const auto start = std::chrono::steady_clock::now();
+  report.needs = needs_of(description);
+  report.warnings = description.warnings;
+  for (std::string& warning : unsupported(description)) report.warnings.push_back(std::move(warning));
+  ASSIGN_OR_RETURN(ScenePtr scene, RenderSceneBuilder(description, files, options, report.warnings).build());
+  if (options.strict && !report.warnings.empty()) return invalid_input("--strict: {}", report.warnings.front());
+  report.build_seconds = seconds_since(start);
+  return scene;
+}
+
+std::vector<std::string> substitutions(const Scene& scene, const Mix& mix) {
+  // (wanted, shape, instead) -> how many lights.
+  std::map<std::tuple<std::string, std::string, std::string>, int> counts;
+  for (const StrategyCount& wanted : mix.strategies) {
+    const Mix alone{false, {{wanted.kind, wanted.angle_degrees, 1}}};
+    std::string name = label(alone);
+    name.resize(name.find(':'));
+    for (const AreaEmitter& emitter : scene.lights.area) {
+      const std::string instead = name_of(fit(wanted, emitter));
+      if (instead != name) ++counts[{name, shape_name(emitter.shape), instead}];
+    }
+  }
+  std::vector<std::string> out;
+  for (const auto& [key, n] : counts)
+    out.push_back(fmt::format("{} on {} {} light{}: {}", std::get<0>(key), n, std::get<1>(key), n == 1 ? "" : "s",
+                              std::get<2>(key)));
+  return out;
+}
+
+SceneCounts counts(const Scene& scene) {
+  return {int64_t(scene.lights.size()), scene.triangles, int64_t(scene.description.materials.size())};
+}
+
+}  // namespace penumbra

@@ -1,0 +1,52 @@
+#pragma once
+// From the description to the scene: meshes placed, lights found, everything built.
+#include "absl/status/statusor.h"
+#include "worker/render/scene.h"
+
+namespace penumbra {
+
+/// The steps of build_scene(), in order.
+class RenderSceneBuilder {
+ public:
+  RenderSceneBuilder(const SceneDescription& description, const SceneFiles& files, const LoadOptions& options,
+               std::vector<std::string>& warnings)
+      : description_(description), files_(files), options_(options), warnings_(warnings) {}
+
+  absl::StatusOr<ScenePtr> build();
+
+ private:
+  absl::Status place_shapes();
+  absl::Status place_objects();
+  absl::Status place_shape(const ShapeEntity& shape, bool in_object);
+  absl::Status build_textures();
+  absl::Status build_geometry();
+  absl::Status add_lights();
+  AlphaTest alpha_test(size_t mesh) const;
+
+  const SceneDescription& description_;
+  const SceneFiles& files_;
+  const LoadOptions& options_;
+  std::vector<std::string>& warnings_;
+  ScenePtr scene_;
+  std::vector<bool> visible_;          ///< per mesh
+  std::vector<FloatValue> alpha_;      ///< per mesh; constant 1: opaque
+  std::vector<bool> used_textures_;
+  std::vector<ObjectInput> objects_;
+  std::vector<InstanceInput> placed_;
+};
+
+/// Area emitters of a placed shape, appended to `lights`; the mesh's triangles are its surface.
+/// (area_lights.cpp)
+absl::Status add_area_light(const ShapeEntity& shape, uint32_t mesh, const SceneMesh& placed, bool visible,
+                            const SceneDescription& description, const SceneFiles& files, LightSet& lights,
+                            std::vector<std::string>& warnings);
+
+/// Lights that are not on shapes: point, spot, distant, infinite. (distant_lights.cpp)
+absl::Status add_light(const LightEntity& light, const SceneDescription& description, const SceneFiles& files,
+                       bool strict, LightSet& lights, std::vector<std::string>& warnings);
+
+/// Applies an object-to-world transform to a mesh; vertex normals come out unit and turned if `reverse`.
+void transform(TriangleMesh& mesh, const Matrix& to_world, bool reverse);
+bool swaps_handedness(const Matrix& m);
+
+}  // namespace penumbra

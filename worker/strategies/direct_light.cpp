@@ -1,0 +1,341 @@
+#include "worker/strategies/direct_light.h"
+
+#include <cmath>
+#include <limits>
+
+#include "proto/status.h"
+
+namespace penumbra {
+namespace {
+
+constexpr size_t kNoLine = std::numeric_limits<size_t>::max();
+/// Streams of random numbers that belong to no single light.
+constexpr uint32_t kBsdfStream = 0xffffffff, kDrawStream = 0x80000000;
+
+bool is_black(const Rgb& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
+bool is_bsdf(const Strategy& s) { return std::holds_alternative<BsdfStrategy>(s); }
+
+/// The overload sets of strategy.h, asked through the variant. Each kind of strategy has one of the two.
+LightSample sample_point(const Strategy& strategy, const LightView& view, const Vec2d& u) {
+  return std::visit(
+      [&](const auto& s) -> LightSample {
+        if constexpr (requires { sample(s, view, u); }) return sample(s, view, u);
+        return {};
+      },
+      strategy);
+}
+double density_of(const Strategy& strategy, const LightView& view, const LightSample& at) {
+  return std::visit(
+      [&](const auto& s) -> double {
+        if constexpr (requires { pdf(s, view, at); }) return pdf(s, view, at);
+        return 0;
+      },
+      strategy);
+}
+LightLine choose_line(const Strategy& strategy, const LightView& view, double u) {
+  return std::visit(
+      [&](const auto& s) -> LightLine {
+        if constexpr (requires { choose(s, view, u); }) return choose(s, view, u);
+        return {};
+      },
+      strategy);
+}
+LightLine line_through(const Strategy& strategy, const LightView& view, const Vec3d& p) {
+  return std::visit(
+      [&](const auto& s) -> LightLine {
+        if constexpr (requires { through(s, view, p); }) return through(s, view, p);
+        return {};
+      },
+      strategy);
+}
+
+/// Samples that the mix expects of a slot at this light: the n_s of the balance heuristic.
+double expected_count(const PreparedMix::Slot& slot, double draws) {
+  return is_bsdf(slot.strategy) ? slot.count : slot.count * draws;
+}
+
+/// End of a shadow segment on a flat light: moved off the light's plane towards x, past the rounding of
+/// the light's own vertices (a few ulp of the largest coordinate).
+Vec3f end_on_light(const LightPoint& at, const Vec3d& x) {
+  const double largest = std::max({std::abs(at.p.x), std::abs(at.p.y), std::abs(at.p.z)});
+  const double ulps = 8 * std::numeric_limits<float>::epsilon() * largest;
+  const double side = at.n.dot(x - at.p) < 0 ? -1 : 1;
+  return Vec3f(at.p + at.n * (side * ulps));
+}
+
+}  // namespace
+
+PreparedMix::PreparedMix(const Mix& mix, const LightSet& lights) : combination_(mix.combination) {
+  for (const StrategyCount& s : mix.strategies) {
+    counts_.push_back(s.count);
+    environment_.push_back(fit_environment(s));
+  }
+  fitted_.reserve(lights.area.size() * mix.strategies.size());
+  for (const AreaEmitter& emitter : lights.area)
+    for (const StrategyCount& s : mix.strategies) fitted_.push_back(fit(s, emitter));
+}
+
+Rgb DirectLight::estimate(const ShadingPoint& point, const PassSampler& sampler, int depth) {
+  Rgb sum(0);
+  const LightSet& lights = scene_.lights;
+  const size_t extended = lights.area.size() + lights.environments.size();
+  trace_bsdf(point, sampler, depth);
+  if (!lights.draws()) {
+    for (size_t l = 0; l < extended; ++l) sum += ask(point, l, 1, true, uint32_t(l), sampler, depth);
+    for (const DeltaEmitter& e : lights.delta) sum += delta(point, e);
+    return sum;
+  }
+  // Many lights: some are drawn, and the chance of being drawn is part of every density. What the
+  // material's own directions met counts once, whether that light was drawn or not.
+  for (int d = 0; d < LightSet::kMostAsked; ++d) {
+    const size_t l = lights.draw(sampler.select(depth, d));
+    const double draws = LightSet::kMostAsked * lights.probability(l);
+    if (l < extended) sum += ask(point, l, draws, true, kDrawStream + uint32_t(d), sampler, depth);
+    else sum += delta(point, lights.delta[l - extended]) / float(draws);
+  }
+  while (!hits_.empty()) {
+    const size_t l = hits_.back().light;
+    sum += ask(point, l, LightSet::kMostAsked * lights.probability(l), false, 0, sampler, depth);
+  }
+  return sum;
+}
+
+/// Traces the directions of the mix's bsdf samples once, for all lights, and keeps those that met one.
+void DirectLight::trace_bsdf(const ShadingPoint& point, const PassSampler& sampler, int depth) {
+  hits_.clear();
+  const LightSet& lights = scene_.lights;
+  for (size_t s = 0; s < mix_.slots(); ++s) {
+    const PreparedMix::Slot slot = mix_.environment_slot(s);
+    if (!is_bsdf(slot.strategy)) continue;
+    for (int i = 0; i < slot.count; ++i) {
+      const Vec2d u = sampler.light(depth, kBsdfStream, int(s), i, slot.count);
+      const auto scattered =
+          point.bsdf.sample(point.wo, u, sampler.choice(depth, kBsdfStream, int(s), i, slot.count));
+      if (!scattered || !(scattered->pdf > 0)) continue;
+      const Vec3f& wi = scattered->wi;
+      const Ray ray{point.origin(wi), wi, 0, std::numeric_limits<float>::infinity()};
+      BsdfHit found;
+      found.slot = s;
+      found.sample.wi = wi;
+      const auto hit = scene_.geometry.intersect(ray, counters_);
+      if (!hit) {
+        for (size_t e = 0; e < lights.environments.size(); ++e) {
+          found.light = lights.area.size() + e;
+          found.sample.radiance = lights.environments[e].radiance(wi);
+          found.sample.at.pdf = scattered->pdf;
+          hits_.push_back(found);
+        }
+        continue;
+      }
+      const Vec3d p = Vec3d(ray.origin) + Vec3d(wi) * double(hit->distance);
+      const uint32_t emitter = lights.emitter_at(hit->id, p, wi);
+      if (emitter == kNone) continue;
+      found.light = emitter;
+      found.sample.radiance = lights.area[emitter].radiance;
+      found.sample.at = {p, emission_normal(lights.area[emitter].shape, p), scattered->pdf};
+      hits_.push_back(found);
+    }
+  }
+}
+
+Rgb DirectLight::ask(const ShadingPoint& point, size_t light, double draws, bool draw_samples,
+                     uint32_t stream, const PassSampler& sampler, int depth) {
+  const LightSet& lights = scene_.lights;
+  const LightView view = light < lights.area.size()
+                             ? LightView(point, lights.area[light])
+                             : LightView(point, lights.environments[light - lights.area.size()]);
+  const Task task{view, light, draws};
+  candidates_.clear();
+  own_lines_.clear();
+  // With drawn lights the material's hits are asked on their own, once.
+  if (!draw_samples || !lights.draws()) gather_bsdf(task);
+  if (draw_samples) {
+    gather_points(task, stream, sampler, depth);
+    gather_lines(task, stream, sampler, depth);
+  }
+  if (candidates_.empty()) return Rgb(0);
+  resolve(task);
+  return combine(task);
+}
+
+void DirectLight::gather_bsdf(const Task& task) {
+  const auto mine = [&](const BsdfHit& hit) { return hit.light == task.light; };
+  for (const BsdfHit& hit : hits_)
+    if (mine(hit)) push(task, hit.sample, hit.slot, Sight::kClear, kNoLine, 0);
+  std::erase_if(hits_, mine);
+}
+
+void DirectLight::gather_points(const Task& task, uint32_t stream, const PassSampler& sampler, int depth) {
+  for (size_t s = 0; s < mix_.slots(); ++s) {
+    const PreparedMix::Slot slot = task.slot(mix_, s);
+    if (is_bsdf(slot.strategy) || is_line(slot.strategy)) continue;
+    for (int i = 0; i < slot.count; ++i) {
+      const Vec2d u = sampler.light(depth, stream, int(s), i, slot.count);
+      push(task, sample_point(slot.strategy, task.view, u), s, Sight::kUnknown, kNoLine, 0);
+    }
+  }
+}
+
+/// All lines of all line strategies first, traced in one call; then a point on each one's visible part.
+void DirectLight::gather_lines(const Task& task, uint32_t stream, const PassSampler& sampler, int depth) {
+  for (size_t s = 0; s < mix_.slots(); ++s) {
+    const PreparedMix::Slot slot = task.slot(mix_, s);
+    if (!is_line(slot.strategy)) continue;
+    for (int i = 0; i < slot.count; ++i) {
+      const Vec2d u = sampler.light(depth, stream, int(s), i, slot.count);
+      own_lines_.add(choose_line(slot.strategy, task.view, u.x), task.view.point(), task.view.area());
+    }
+  }
+  if (own_lines_.size() == 0) return;
+  own_lines_.trace(scene_.geometry, counters_);
+  size_t line = 0;
+  for (size_t s = 0; s < mix_.slots(); ++s) {
+    const PreparedMix::Slot slot = task.slot(mix_, s);
+    if (!is_line(slot.strategy)) continue;
+    for (int i = 0; i < slot.count; ++i, ++line) {
+      if (own_lines_.visible(line).empty()) continue;
+      const Vec2d u = sampler.light(depth, stream, int(s), i, slot.count);
+      const LightPoint at =
+          sample_line(own_lines_.line(line), task.view.x(), own_lines_.visible(line), u.y);
+      push(task, towards(task.view, at), s, Sight::kClear, line, parameter_of(own_lines_.line(line), at.p));
+    }
+  }
+}
+
+void DirectLight::push(const Task& task, const LightSample& sample, size_t slot, Sight sight, size_t line,
+                       double s) {
+  if (!(sample.at.pdf > 0)) return;
+  const Rgb f = task.view.point().scatter(sample.wi) * sample.radiance;
+  if (is_black(f)) return;
+  candidates_.push_back({sample, f, slot, line, s, sight});
+}
+
+void DirectLight::resolve(const Task& task) {
+  const size_t slots = mix_.slots();
+  const Combination how = mix_.combination();
+  // Only these two weigh with what lines can see from here; a line query per foreign candidate is the price.
+  const bool queries = how == Combination::kBalance || how == Combination::kPower;
+  foreign_lines_.clear();
+  foreign_.assign(candidates_.size() * slots, kNoLine);
+  if (queries && task.view.is_area()) {
+    for (size_t c = 0; c < candidates_.size(); ++c)
+      for (size_t s = 0; s < slots; ++s) {
+        const Strategy& strategy = task.slot(mix_, s).strategy;
+        if (!is_line(strategy) || s == candidates_[c].slot) continue;
+        foreign_[c * slots + s] =
+            foreign_lines_.add(line_through(strategy, task.view, candidates_[c].sample.at.p),
+                               task.view.point(), task.view.area());
+      }
+    if (foreign_lines_.size() > 0) foreign_lines_.trace(scene_.geometry, counters_);
+  }
+  densities_.assign(candidates_.size() * slots, 0);
+  for (size_t c = 0; c < candidates_.size(); ++c) densities(task, candidates_[c], &densities_[c * slots]);
+}
+
+/// The density of every strategy of the mix at a candidate; a candidate that is hidden loses its f.
+void DirectLight::densities(const Task& task, Candidate& c, double* row) {
+  const size_t slots = mix_.slots();
+  const size_t* foreign = &foreign_[size_t(row - densities_.data())];
+  const Vec3d x = task.view.x();
+  for (size_t s = 0; s < slots; ++s) {
+    const Strategy strategy = task.slot(mix_, s).strategy;
+    if (s == c.slot) {
+      row[s] = c.sample.at.pdf;
+    } else if (!is_line(strategy)) {
+      if (mix_.combination() != Combination::kAverage) row[s] = density_of(strategy, task.view, c.sample);
+    } else if (foreign[s] != kNoLine) {
+      const LightLine& line = foreign_lines_.line(foreign[s]);
+      const double at = parameter_of(line, c.sample.at.p);
+      const bool seen = foreign_lines_.sees(foreign[s], at);
+      if (seen) row[s] = pdf_line(line, x, at, foreign_lines_.visible_measure(foreign[s]));
+      if (c.sight == Sight::kUnknown) {
+        // The line through the point knows whether the point is visible: no shadow ray.
+        c.sight = Sight::kClear;
+        if (!seen) c.f = Rgb(0);
+      }
+    } else if (mix_.combination() == Combination::kFree) {
+      const LightLine line = line_through(strategy, task.view, c.sample.at.p);
+      row[s] = pdf_line(line, x, parameter_of(line, c.sample.at.p), 1);
+    }
+  }
+  if (c.sight == Sight::kUnknown) {
+    if (!clear(task, c.sample)) c.f = Rgb(0);
+  } else if (task.view.is_area() && scene_.geometry.has_alpha() && !is_black(c.f) &&
+             !is_bsdf(task.slot(mix_, c.slot).strategy)) {
+    const Vec3f end = end_on_light(c.sample.at, x);
+    if (scene_.geometry.occluded_by_alpha(task.view.point().origin(c.sample.wi), end, counters_)) c.f = Rgb(0);
+  }
+}
+
+bool DirectLight::clear(const Task& task, const LightSample& sample) {
+  const Vec3f& origin = task.view.point().origin(sample.wi);
+  if (!task.view.is_area())
+    return !scene_.geometry.occluded(origin, origin + sample.wi * scene_.lights.reach(), counters_);
+  if (task.view.area().flat)
+    return !scene_.geometry.occluded(origin, end_on_light(sample.at, task.view.x()), counters_);
+  // A curved light is traced as a tessellation that the sampled point is not on: it is visible if the
+  // light is the first thing met.
+  const Ray ray{origin, sample.wi, 0, std::numeric_limits<float>::infinity()};
+  const auto hit = scene_.geometry.intersect(ray, counters_);
+  return hit && hit->id.instance == kNone && hit->id.mesh == task.view.area().mesh;
+}
+
+/// Estimator of one light: Σ over candidates of weight × f / (n p), with n p of the strategy that found
+/// it. Veach & Guibas 1995; design §6.
+Rgb DirectLight::combine(const Task& task) const {
+  const size_t slots = mix_.slots();
+  Rgb sum(0);
+  for (size_t c = 0; c < candidates_.size(); ++c) {
+    const Candidate& candidate = candidates_[c];
+    if (is_black(candidate.f)) continue;
+    const double* row = &densities_[c * slots];
+    const PreparedMix::Slot own = task.slot(mix_, candidate.slot);
+    const double own_density = expected_count(own, task.draws) * row[candidate.slot];
+    double scale = 0;
+    switch (mix_.combination()) {
+      case Combination::kAverage:
+        scale = 1 / (own_density * double(slots));
+        break;
+      case Combination::kPower: {
+        double squares = 0;
+        for (size_t s = 0; s < slots; ++s) {
+          const double ratio = expected_count(task.slot(mix_, s), task.draws) * row[s] / own_density;
+          squares += ratio * ratio;
+        }
+        scale = 1 / (own_density * squares);
+        break;
+      }
+      case Combination::kFree: {
+        // Design §5.1: weights from the densities as if nothing were hidden. A line's own density on
+        // its visible part is larger than that by 1 / (visible measure).
+        const double visible = candidate.line == kNoLine ? 1 : own_lines_.visible_measure(candidate.line);
+        double total = 0;
+        for (size_t s = 0; s < slots; ++s)
+          total += expected_count(task.slot(mix_, s), task.draws) * row[s] * (s == candidate.slot ? visible : 1);
+        scale = visible / total;
+        break;
+      }
+      case Combination::kSmooth:
+        PENUMBRA_CHECK(!"a combination that no worker has; the client and the server refuse it");
+        break;
+      case Combination::kBalance: {
+        double total = 0;
+        for (size_t s = 0; s < slots; ++s) total += expected_count(task.slot(mix_, s), task.draws) * row[s];
+        scale = 1 / total;
+        break;
+      }
+    }
+    sum += candidate.f * float(scale);
+  }
+  return sum;
+}
+
+Rgb DirectLight::delta(const ShadingPoint& point, const DeltaEmitter& emitter) {
+  const DeltaLight light = delta_light_at(emitter, point.above, scene_.lights.reach());
+  if (is_black(light.irradiance)) return Rgb(0);
+  const Rgb f = point.scatter(light.wi) * light.irradiance;
+  if (is_black(f) || scene_.geometry.occluded(point.origin(light.wi), light.end, counters_)) return Rgb(0);
+  return f;
+}
+
+}  // namespace penumbra

@@ -1,0 +1,107 @@
+#pragma once
+// Direct light at a shading point: one loop over all strategies of a mix, whatever they are.
+#include <vector>
+
+#include "proto/mix.h"
+#include "worker/geometry/geometry.h"
+#include "worker/sampling/sampler.h"
+#include "worker/strategies/light_set.h"
+#include "worker/strategies/line_batch.h"
+#include "worker/strategies/shading_point.h"
+#include "worker/strategies/strategy.h"
+
+namespace penumbra {
+
+/// A mix made ready for a scene's lights: what each of its strategies is on each of them.
+class PreparedMix {
+ public:
+  PreparedMix(const Mix& mix, const LightSet& lights);
+
+  struct Slot {
+    Strategy strategy;
+    int count = 1;
+  };
+  size_t slots() const { return counts_.size(); }
+  Slot slot(size_t area_emitter, size_t s) const {
+    return {fitted_[area_emitter * slots() + s], counts_[s]};
+  }
+  Slot environment_slot(size_t s) const { return {environment_[s], counts_[s]}; }
+  Combination combination() const { return combination_; }
+
+ private:
+  std::vector<Strategy> fitted_;  ///< row per area emitter
+  std::vector<Strategy> environment_;
+  std::vector<int> counts_;
+  Combination combination_;
+};
+
+/// What the loop needs of the scene.
+struct Surroundings {
+  const Geometry& geometry;
+  const LightSet& lights;
+};
+
+/// Estimator of the direct light that a point scatters towards its viewer. Keeps scratch memory between
+/// calls; one per thread. Every call is a pure function of its arguments.
+class DirectLight {
+ public:
+  DirectLight(const Surroundings& surroundings, const PreparedMix& mix, QueryCounters& counters)
+      : scene_(surroundings), mix_(mix), counters_(counters) {}
+
+  /// Outgoing radiance at the point due to all lights; `depth` is the vertex's place on the path.
+  Rgb estimate(const ShadingPoint& point, const PassSampler& sampler, int depth);
+
+ private:
+  enum class Sight { kClear, kUnknown };
+  /// A direction that some strategy found, on its way to its weight.
+  struct Candidate {
+    LightSample sample;
+    Rgb f;              ///< BSDF × cosine × radiance
+    size_t slot = 0;    ///< of the strategy that found it
+    size_t line = 0;    ///< of its own line in the batch, if its strategy is a line
+    double s = 0;       ///< where on that line
+    Sight sight = Sight::kUnknown;
+  };
+  struct BsdfHit {
+    size_t light = 0;   ///< area emitters first, then environments
+    LightSample sample;
+    size_t slot = 0;
+  };
+  /// One light from one point, with the strategies that serve it.
+  struct Task {
+    const LightView& view;
+    size_t light = 0;       ///< area emitters first, then environments
+    double draws = 1;       ///< expected number of times the light is asked
+    PreparedMix::Slot slot(const PreparedMix& mix, size_t s) const {
+      return view.is_area() ? mix.slot(light, s) : mix.environment_slot(s);
+    }
+  };
+
+  void trace_bsdf(const ShadingPoint& point, const PassSampler& sampler, int depth);
+  Rgb ask(const ShadingPoint& point, size_t light, double draws, bool draw_samples, uint32_t stream,
+          const PassSampler& sampler, int depth);
+  Rgb delta(const ShadingPoint& point, const DeltaEmitter& emitter);
+
+  void gather_bsdf(const Task& task);
+  void gather_points(const Task& task, uint32_t stream, const PassSampler& sampler, int depth);
+  void gather_lines(const Task& task, uint32_t stream, const PassSampler& sampler, int depth);
+  void push(const Task& task, const LightSample& sample, size_t slot, Sight sight, size_t line, double s);
+  /// Sets densities_ (row per candidate, as the estimate needs them and as the weights need them) and
+  /// drops candidates that nothing reaches.
+  void resolve(const Task& task);
+  void densities(const Task& task, Candidate& candidate, double* row);
+  bool clear(const Task& task, const LightSample& sample);
+  Rgb combine(const Task& task) const;
+
+  Surroundings scene_;
+  const PreparedMix& mix_;
+  QueryCounters& counters_;
+
+  std::vector<BsdfHit> hits_;
+  std::vector<Candidate> candidates_;
+  LineBatch own_lines_, foreign_lines_;
+  std::vector<size_t> foreign_;     ///< row per candidate, a handle per slot
+  std::vector<double> densities_;   ///< row per candidate, a density per slot
+};
+
+}  // namespace penumbra

@@ -1,0 +1,104 @@
+#include "worker/strategies/strategy.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "proto/status.h"
+
+namespace penumbra {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+/// Angle from edge u to edge v of a light, in its plane: where `line-sa@v` runs on a light that has no
+/// spherical rectangle.
+double second_edge_angle(const LightShape& shape) {
+  Vec3d u(1, 0, 0), v(0, 1, 0);
+  if (const auto* quad = std::get_if<QuadShape>(&shape)) {
+    u = Vec3d(quad->u);
+    v = Vec3d(quad->v);
+  } else if (const auto* triangle = std::get_if<TriangleShape>(&shape)) {
+    u = Vec3d(triangle->p1) - Vec3d(triangle->p0);
+    v = Vec3d(triangle->p2) - Vec3d(triangle->p0);
+  }
+  return std::atan2(u.cross(v).length(), u.dot(v));
+}
+
+Strategy fit_point(const LightShape& shape) {
+  const bool spherical = std::holds_alternative<QuadShape>(shape) ||
+                         std::holds_alternative<TriangleShape>(shape) ||
+                         std::holds_alternative<SphereShape>(shape);
+  if (spherical) return SolidAngleStrategy{};
+  return AreaStrategy{};
+}
+
+Strategy fit_line_area(double radians, const LightShape& shape) {
+  if (has_line_area(shape)) return LineAreaStrategy{radians};
+  return fit_point(shape);
+}
+
+Strategy fit_line_solid_angle(bool along_u, const LightShape& shape) {
+  if (has_line_solid_angle(shape)) return LineSolidAngleStrategy{along_u};
+  return fit_line_area(along_u ? 0 : second_edge_angle(shape), shape);
+}
+
+}  // namespace
+
+Strategy fit(const StrategyCount& wanted, const AreaEmitter& emitter) {
+  const LightShape& shape = emitter.shape;
+  switch (wanted.kind) {
+    case StrategyKind::kBsdf: return emitter.invisible ? fit_point(shape) : Strategy{BsdfStrategy{}};
+    case StrategyKind::kArea: return AreaStrategy{};
+    case StrategyKind::kSolidAngle: return fit_point(shape);
+    case StrategyKind::kLineArea: return fit_line_area(wanted.angle_degrees * kDegree, shape);
+    case StrategyKind::kLineSolidAngleU: return fit_line_solid_angle(true, shape);
+    case StrategyKind::kLineSolidAngleV: return fit_line_solid_angle(false, shape);
+    case StrategyKind::kLineAnalytic: break;
+  }
+  PENUMBRA_CHECK(!"a strategy that no worker has; the client and the server refuse it");
+  return BsdfStrategy{};
+}
+
+Strategy fit_environment(const StrategyCount& wanted) {
+  if (wanted.kind == StrategyKind::kBsdf) return BsdfStrategy{};
+  return EnvironmentStrategy{};
+}
+
+std::string name_of(const Strategy& strategy) {
+  struct Name {
+    std::string operator()(const BsdfStrategy&) const { return "bsdf"; }
+    std::string operator()(const AreaStrategy&) const { return "area"; }
+    std::string operator()(const SolidAngleStrategy&) const { return "sa"; }
+    std::string operator()(const EnvironmentStrategy&) const { return "its own luminance"; }
+    std::string operator()(const LineAreaStrategy& s) const {
+      return fmt::format("line-area@{:g}", s.radians / kDegree);
+    }
+    std::string operator()(const LineSolidAngleStrategy& s) const {
+      return s.along_u ? "line-sa@u" : "line-sa@v";
+    }
+  };
+  return std::visit(Name{}, strategy);
+}
+
+bool is_line(const Strategy& strategy) {
+  return std::holds_alternative<LineAreaStrategy>(strategy) ||
+         std::holds_alternative<LineSolidAngleStrategy>(strategy);
+}
+
+LightSample towards(const LightView& view, const LightPoint& at) {
+  LightSample s;
+  s.at = at;
+  const Vec3d d = at.p - view.x();
+  const double distance = d.length();
+  if (!(distance > 0)) {  // the shading point lies on the light: no direction
+    s.at.pdf = 0;
+    return s;
+  }
+  s.wi = Vec3f(d / distance);
+  s.radiance = view.area().radiance;
+  return s;
+}
+
+}  // namespace penumbra

@@ -1,0 +1,94 @@
+#pragma once
+// The closed set of strategies. A new one needs: a file of its own with its struct, its name in the
+// variant, its row in fit(), and either sample()/pdf() overloads (points) or choose()/through()
+// overloads (lines). The loop in direct_light.cpp knows none of them by name.
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "proto/mix.h"
+#include "worker/effects/environment.h"
+#include "worker/lights/emitter.h"
+#include "worker/lights/line.h"
+#include "worker/lights/shape.h"
+#include "worker/strategies/shading_point.h"
+
+namespace penumbra {
+
+/// `bsdf`: the direction comes from the material; the point is what the traced ray meets.
+struct BsdfStrategy {};
+/// `area`: uniform on the surface.
+struct AreaStrategy {};
+/// `sa`: uniform in the solid angle of the shape.
+struct SolidAngleStrategy {};
+/// The environment's own sampling by luminance; stands for `area`, `sa` and lines there.
+struct EnvironmentStrategy {};
+/// `line-area@DEG`.
+struct LineAreaStrategy { double radians = 0; };
+/// `line-sa@u`, `line-sa@v`.
+struct LineSolidAngleStrategy { bool along_u = true; };
+
+using Strategy = std::variant<BsdfStrategy, AreaStrategy, SolidAngleStrategy, EnvironmentStrategy,
+                              LineAreaStrategy, LineSolidAngleStrategy>;
+
+/// What a mix's strategy becomes on a light of this shape: itself, or the nearest that fits.
+Strategy fit(const StrategyCount& wanted, const AreaEmitter& emitter);
+Strategy fit_environment(const StrategyCount& wanted);
+/// `sa`, for messages: the strategy in the words of the mix grammar.
+std::string name_of(const Strategy& strategy);
+bool is_line(const Strategy& strategy);
+
+/// One light as it is seen from one shading point; what strategies share is made once, when first asked.
+class LightView {
+ public:
+  LightView(const ShadingPoint& point, const AreaEmitter& emitter) : point_(&point), area_(&emitter) {}
+  LightView(const ShadingPoint& point, const Environment& environment)
+      : point_(&point), environment_(&environment) {}
+
+  const ShadingPoint& point() const { return *point_; }
+  const AreaEmitter& area() const { return *area_; }
+  const Environment& environment() const { return *environment_; }
+  bool is_area() const { return area_ != nullptr; }
+  Vec3d x() const { return Vec3d(point_->above); }
+  const SeenShape& seen() const {
+    if (!seen_) seen_.emplace(area_->shape, x());
+    return *seen_;
+  }
+
+ private:
+  const ShadingPoint* point_;
+  const AreaEmitter* area_ = nullptr;
+  const Environment* environment_ = nullptr;
+  mutable std::optional<SeenShape> seen_;
+};
+
+/// A direction towards a light.
+struct LightSample {
+  Vec3f wi;
+  LightPoint at;  ///< area lights: where; its pdf is the strategy's density, sr⁻¹ at x
+  Rgb radiance;
+};
+
+/// A point or direction from a strategy that samples points. pdf 0: no sample.
+/// Only for the strategies that are neither bsdf nor lines.
+LightSample sample(const AreaStrategy&, const LightView& view, const Vec2d& u);
+LightSample sample(const SolidAngleStrategy&, const LightView& view, const Vec2d& u);
+LightSample sample(const EnvironmentStrategy&, const LightView& view, const Vec2d& u);
+
+/// Density of sample() at a direction that some strategy found, sr⁻¹.
+double pdf(const BsdfStrategy&, const LightView& view, const LightSample& s);
+double pdf(const AreaStrategy&, const LightView& view, const LightSample& s);
+double pdf(const SolidAngleStrategy&, const LightView& view, const LightSample& s);
+double pdf(const EnvironmentStrategy&, const LightView& view, const LightSample& s);
+
+/// The line that a line strategy draws with u in [0,1), or the one that passes through a point.
+/// scale 0: none.
+LightLine choose(const LineAreaStrategy& strategy, const LightView& view, double u);
+LightLine choose(const LineSolidAngleStrategy& strategy, const LightView& view, double u);
+LightLine through(const LineAreaStrategy& strategy, const LightView& view, const Vec3d& p);
+LightLine through(const LineSolidAngleStrategy& strategy, const LightView& view, const Vec3d& p);
+
+/// A point of the view's area light as a sample (direction, radiance).
+LightSample towards(const LightView& view, const LightPoint& at);
+
+}  // namespace penumbra
