@@ -1,0 +1,119 @@
+#include "tests/bench/geometry/line_timing.h"
+
+#include <time.h>
+
+#include <algorithm>
+
+namespace penumbra::bench {
+namespace {
+
+constexpr size_t kChunk = 256;
+
+double thread_cpu_seconds() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+double median(std::vector<double>& values) {
+  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+  return values[values.size() / 2];
+}
+
+/// Keeps results alive: the optimiser may not drop the work.
+volatile size_t sink;
+
+class Timer {
+ public:
+  Timer(const Geometry& geometry, int repetitions) : geometry_(geometry), repetitions_(repetitions) {}
+
+  /// Sums of the chunks' medians, in seconds: rays first, lines second.
+  std::pair<double, double> time(const std::vector<ShadingPoint>& points) {
+    double rays = 0, lines = 0;
+    for (size_t first = 0; first < points.size(); first += kChunk) {
+      const std::span<const ShadingPoint> chunk(points.data() + first, std::min(kChunk, points.size() - first));
+      std::vector<double> ray_times, line_times;
+      trace_rays(chunk), trace_lines(chunk);
+      for (int r = 0; r < repetitions_; ++r) {
+        const double t0 = thread_cpu_seconds();
+        trace_rays(chunk);
+        const double t1 = thread_cpu_seconds();
+        trace_lines(chunk);
+        const double t2 = thread_cpu_seconds();
+        ray_times.push_back(t1 - t0);
+        line_times.push_back(t2 - t1);
+      }
+      rays += median(ray_times);
+      lines += median(line_times);
+    }
+    return {rays, lines};
+  }
+
+  QueryCounters counters;
+
+ private:
+  void trace_rays(std::span<const ShadingPoint> points) {
+    size_t hits = 0;
+    for (const ShadingPoint& p : points) {
+      for (const Vec3f& y : p.points) hits += geometry_.occluded(p.lines[0].x, y, counters);
+    }
+    sink = hits;
+  }
+  void trace_lines(std::span<const ShadingPoint> points) {
+    size_t intervals = 0;
+    for (const ShadingPoint& p : points) {
+      geometry_.visible(p.lines, visible_, counters);
+      for (const IntervalSet& set : visible_) intervals += set.size();
+    }
+    sink = intervals;
+  }
+
+  const Geometry& geometry_;
+  int repetitions_;
+  std::vector<IntervalSet> visible_;
+};
+
+Class class_of(const IntervalSet& visible) {
+  if (visible.empty()) return kOccluded;
+  return visible.size() == 1 && visible[0] == Interval{0, 1} ? kVisible : kPartial;
+}
+
+}  // namespace
+
+const char* name_of(Class c) {
+  constexpr const char* names[] = {"all", "visible", "partial", "occluded"};
+  return names[c];
+}
+
+LineTiming time_lines(const Geometry& geometry, const BenchScene& scene, size_t queries, int repetitions) {
+  LineTiming timing;
+  std::vector<ShadingPoint> classes[kClasses];
+  classes[kAll] = tile_coherent_points(geometry, scene, queries, 1, 7);
+  QueryCounters unused;
+  std::vector<IntervalSet> visible;
+  for (const ShadingPoint& p : classes[kAll]) {
+    geometry.visible(p.lines, visible, unused);
+    classes[class_of(visible[0])].push_back(p);
+  }
+  for (int c = kAll; c < kClasses; ++c) {
+    ClassTiming& t = timing.single[c];
+    t.queries = classes[c].size();
+    if (t.queries == 0) continue;
+    Timer timer(geometry, repetitions);
+    const auto [rays, lines] = timer.time(classes[c]);
+    const auto n = static_cast<double>(t.queries);
+    t.ray_ns = rays / n * 1e9;
+    t.line_ns = lines / n * 1e9;
+    const auto traced = static_cast<double>(timer.counters.line_queries);
+    t.nodes = static_cast<double>(timer.counters.nodes_visited) / traced;
+    t.triangles = static_cast<double>(timer.counters.triangles_tested) / traced;
+  }
+  const auto shared = tile_coherent_points(geometry, scene, queries / 4, 4, 11);
+  const auto [rays, lines] = Timer(geometry, repetitions).time(shared);
+  const double n = 4 * static_cast<double>(shared.size());
+  timing.shared_ray_ns = rays / n * 1e9;
+  timing.shared_line_ns = lines / n * 1e9;
+  return timing;
+}
+
+}  // namespace penumbra::bench

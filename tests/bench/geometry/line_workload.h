@@ -1,0 +1,39 @@
+#pragma once
+// The work that line queries are measured on: what a renderer's first bounce asks of its quad lights.
+#include <vector>
+
+#include "worker/geometry/geometry.h"
+
+namespace penumbra::bench {
+
+/// A scene reduced to what the workload needs.
+struct BenchScene {
+  struct Camera {
+    Vec3f origin, right, up, forward;  ///< directions through the image's middle and by one half-height
+    int width = 0, height = 0;
+  };
+  struct Quad {
+    Vec3f o, u, v;
+    PrimitiveId id;
+    uint32_t primitives = 0;
+  };
+  std::vector<TriangleMesh> meshes;
+  std::vector<uint32_t> placed;  ///< object of each mesh's instance list; see objects
+  std::vector<ObjectInput> objects;
+  std::vector<InstanceInput> instances;
+  std::vector<Quad> lights;
+  Camera camera;
+};
+
+/// One shading point: lines towards one light and a point on each of them.
+struct ShadingPoint {
+  std::vector<LineQuery> lines;
+  std::vector<Vec3f> points;  ///< one on each line
+};
+
+/// Camera hits in 16×16 tiles drawn at random, pixel by pixel within a tile, each with `lines` random chords
+/// (parallel to either edge) of a random light that the hit faces, clipped to its horizon.
+std::vector<ShadingPoint> tile_coherent_points(const Geometry& geometry, const BenchScene& scene, size_t count,
+                                               int lines, uint32_t seed);
+
+}  // namespace penumbra::bench
