@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 
+#include "worker/geometry/intervals.h"
 #include "worker/lights/shape.h"
 
 namespace penumbra {
@@ -11,20 +12,27 @@ namespace penumbra {
 /// How points are spread along a chord: uniform in length (line-area), or uniform in
 /// h = y/√(d²+y²) (line-sa; y: signed offset from the foot of x along the chord).
 struct LengthMeasure {};
-struct AngularMeasure { double y0 = 0, length = 0, d2 = 0; };
+struct AngularMeasure {
+  double y0 = 0, length = 0, d2 = 0;
+  double total = 0;  ///< h(y0 + length) − h(y0)
+};
 
-/// A chord of a light, chosen by a line strategy. P(s) = a + s (b - a), s in [0,1].
+/// A chord of a light, chosen by a line strategy. P(s) = a + s (b - a), s in [0,1]. A default-made line is
+/// «no such line»: every density on it is 0.
 struct LightLine {
   Vec3d a, b;
-  Vec3d n;             ///< unit normal of the light's plane, emission side
+  Vec3d n;  ///< unit normal of the light's plane, emission side
   /// Density per solid angle of a point at s = base(s) * total/visible, in the measure below;
   /// for LengthMeasure: (1/A) r²/cosθ; for AngularMeasure: 1/S.
-  double scale = 0;    ///< 1/A or 1/S; 0: no such line
+  double scale = 0;  ///< 1/A or 1/S; 0: no such line
   std::variant<LengthMeasure, AngularMeasure> measure;
+  /// a and b without the rounding of large scene offsets: a = corner + from, b = a + along, corner exact.
+  Vec3d corner, from, along;
 };
 
 /// `line-area@DEG` on a quad or triangle: direction at `radians` from the first edge (u, or p0→p1),
-/// turning towards the second, in the light's plane; the offset has density chord length / area.
+/// turning towards the second, in the light's plane; the offset has density chord length / area. (Several
+/// lines of one light: keep a ParallelChords, chords.h.)
 LightLine choose_line_area(const LightShape& shape, double radians, double u);
 /// The line of that strategy through a point p of the shape.
 LightLine line_area_through(const LightShape& shape, double radians, const Vec3d& p);
@@ -33,7 +41,7 @@ LightLine line_area_through(const LightShape& shape, double radians, const Vec3d
 LightLine choose_line_solid_angle(const SeenShape& seen, bool along_u, double u);
 LightLine line_solid_angle_through(const SeenShape& seen, bool along_u, const Vec3d& p);
 
-/// Which strategies a shape has lines for.
+/// Which strategies a shape has lines for: quads and triangles; rectangles.
 bool has_line_area(const LightShape& shape);
 bool has_line_solid_angle(const LightShape& shape);
 
@@ -43,15 +51,23 @@ double parameter_of(const LightLine& line, const Vec3d& p);
 /// Measure of [lo,hi] relative to the whole chord's (so the whole chord has 1); stable for short parts.
 double relative_measure(const LightLine& line, double lo, double hi);
 
+/// Sum of relative_measure over the visible intervals.
+double visible_measure(const LightLine& line, std::span<const Interval> visible);
+
+/// Parameter s at fraction v in [0,1) of the visible measure, whose sum is `measure` > 0.
+double sample_parameter(const LightLine& line, std::span<const Interval> visible, double measure, double v);
+
 /// Point at fraction v in [0,1) of the visible measure, and its density per solid angle at x.
-/// Nothing visible: pdf 0.
+/// Nothing visible, or x behind the light: pdf 0.
 LightPoint sample_line(const LightLine& line, const Vec3d& x, std::span<const Interval> visible, double v);
 
-/// Density of sample_line at s; 0 if s is hidden. `visible_measure`: sum of relative_measure over the
-/// visible intervals. (1 for the density as if nothing hid the chord: the weights of `/free`.)
+/// Density of sample_line at a visible s (the caller knows whether s is: 0 for a hidden one).
+/// `visible_measure`: sum of relative_measure over the visible intervals; 0: the density is 0. (1 for the
+/// density as if nothing hid the chord: the weights of `/free`.)
 double pdf_line(const LightLine& line, const Vec3d& x, double s, double visible_measure);
 
-/// The part of the chord above the plane through x with unit normal n: [lo,hi], empty if lo >= hi.
+/// The part of the chord above the plane through x with unit normal n: [lo,hi], empty if lo >= hi. Rounded
+/// outwards: light from a hair below the horizon counts 0 by its cosine, light from above must not be lost.
 Interval clip_to_horizon(const LightLine& line, const Vec3d& x, const Vec3d& n);
 
 }  // namespace penumbra

@@ -2,11 +2,12 @@
 // The closed set of light shapes. A new shape needs: a file of its own, its name in the variant, and
 // these overloads. Every density of a point is per solid angle at x (sr⁻¹); x is in world space.
 // Set-up is in double from float inputs, and subtracts x before anything else: scene offsets cancel.
-#include <optional>
 #include <variant>
 
 #include "scenes/math.h"
-#include "worker/geometry/intervals.h"
+#include "worker/lights/spherical_rectangle.h"
+#include "worker/lights/spherical_triangle.h"
+#include "worker/lights/visible_sphere.h"
 
 namespace penumbra {
 
@@ -17,13 +18,26 @@ struct QuadShape {
   bool rectangle() const;
 };
 /// Emits towards (p1-p0) × (p2-p0).
-struct TriangleShape { Vec3f p0, p1, p2; };
+struct TriangleShape {
+  Vec3f p0, p1, p2;
+};
 /// Emits outwards, or inwards.
-struct SphereShape { Vec3f center; float radius = 1; bool inwards = false; };
+struct SphereShape {
+  Vec3f center;
+  float radius = 1;
+  bool inwards = false;
+};
 /// Annulus in the plane through center with unit normal n; emits towards n. A full disk: inner = 0.
-struct DiskShape { Vec3f center, n; float radius = 1, inner = 0; };
+struct DiskShape {
+  Vec3f center, n;
+  float radius = 1, inner = 0;
+};
 /// Open tube from base along axis (its length is the height); emits away from the axis, or inwards.
-struct CylinderShape { Vec3f base, axis; float radius = 1; bool inwards = false; };
+struct CylinderShape {
+  Vec3f base, axis;
+  float radius = 1;
+  bool inwards = false;
+};
 
 using LightShape = std::variant<QuadShape, TriangleShape, SphereShape, DiskShape, CylinderShape>;
 
@@ -42,12 +56,14 @@ LightPoint sample_area(const LightShape& shape, const Vec3d& x, const Vec2d& u);
 double pdf_area(const LightShape& shape, const Vec3d& x, const Vec3d& p, const Vec3d& n);
 
 /// What `sa` and `line-sa` know of a shape from one x; made once per (x, light) and shared by all samples.
-/// A shape seen from behind, edge-on or not at all has solid_angle 0.
+/// A shape seen from behind, edge-on or not at all has solid_angle 0. Keeps a pointer to the shape. Belongs
+/// to one thread: what only some samples need is made at its first use.
 class SeenShape {
  public:
   SeenShape(const LightShape& shape, const Vec3d& x);
   /// Solid angle of the shape's set-up (sr): rectangle UFK13, triangle (Arvo 1995, Van Oosterom &
-  /// Strackee), sphere's cone. Disk and cylinder: no parametrisation, use area (has_solid_angle false).
+  /// Strackee), sphere's cone, or 4π inside one. Disk and cylinder have no parametrisation and 0: use area
+  /// (has_solid_angle false).
   double solid_angle() const { return solid_angle_; }
   bool has_solid_angle() const;
 
@@ -58,19 +74,23 @@ class SeenShape {
 
   const LightShape& shape() const { return *shape_; }
   const Vec3d& x() const { return x_; }
+  /// The rectangle's frame at x; null for every other shape.
+  const SphericalRectangle* rectangle() const { return std::get_if<SphericalRectangle>(&frame_); }
 
  private:
-  friend struct LineAccess;
+  /// No set-up: disks and cylinders.
+  struct AreaOnly {};
+  /// A parallelogram without right angles: o, o+u, o+u+v and o, o+u+v, o+v.
+  struct TwoTriangles {
+    SphericalTriangle first, second;
+  };
+  using Frame = std::variant<AreaOnly, SphericalRectangle, SphericalTriangle, TwoTriangles, VisibleSphere>;
+  static Frame make_frame(const LightShape& shape, const Vec3d& x);
+
   const LightShape* shape_;
   Vec3d x_;
-  double solid_angle_ = 0;
-  /// Spherical rectangle (UFK13's frame at x), numerics/FORMULAS.md 1–3.
-  struct RectFrame { Vec3d ex, ey, n; double x0, y0, z, w, h; };
-  /// Spherical triangle: unit directions and the angles Arvo's warp needs.
-  struct TriFrame { Vec3d a, b, c; double alpha = 0; };
-  /// Cone of a sphere.
-  struct ConeFrame { Vec3d axis; double distance = 0, one_minus_cos = 0; };
-  std::variant<std::monostate, RectFrame, TriFrame, ConeFrame> frame_;
+  Frame frame_;
+  double solid_angle_;
 };
 
 }  // namespace penumbra

@@ -1,0 +1,14 @@
+#pragma once
+#include "worker/lights/shape.h"
+
+namespace penumbra {
+
+double area(const SphereShape& shape);
+/// A point uniform in area, with the normal on the emission side; pdf is left 0.
+LightPoint point_on(const SphereShape& shape, const Vec2d& u);
+/// Distance of x in front of the tangent plane at p (on the shape, unit normal n); not positive: not seen.
+double height_above(const SphereShape& shape, const Vec3d& x, const Vec3d& p, const Vec3d& n);
+/// The point with outward unit normal n, with the normal on the emission side; pdf is left 0.
+LightPoint point_at(const SphereShape& shape, const Vec3d& n);
+
+}  // namespace penumbra

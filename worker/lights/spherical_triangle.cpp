@@ -1,0 +1,68 @@
+#include "worker/lights/spherical_triangle.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "worker/lights/plane_distance.h"
+
+namespace penumbra {
+
+SphericalTriangle::SphericalTriangle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  const Vec3d v[3] = {a, b, c};
+  const double length[3] = {a.length(), b.length(), c.length()};
+  // From the farthest vertex a·e and the distance along its edges fall, so that the sums below do not cancel.
+  turn_ = static_cast<int>(std::max_element(length, length + 3) - length);
+  const int second = (turn_ + 1) % 3, third = (turn_ + 2) % 3;
+  a_ = v[turn_];
+  b_ = v[second];
+  edge_ = v[third] - a_;
+  base_ = a_ - b_;
+  a_length_ = length[turn_];
+  b_length_ = length[second];
+  edge_length_ = edge_.length();
+  // From the nearest vertex the distance to the plane has the smallest rounding error.
+  const Vec3d& nearest = v[std::min_element(length, length + 3) - length];
+  const double distance = distance_in_front(-nearest, -base_, edge_);
+  determinant_ = distance * base_.cross(edge_).length();
+  const double ab = a_.dot(b_), bc = b_.dot(v[third]), ca = v[third].dot(a_), c_length = length[third];
+  sum_ = a_length_ * b_length_ + ab;
+  slope_ = b_length_ * a_.dot(edge_) + a_length_ * b_.dot(edge_);
+  // Van Oosterom & Strackee 1983: tan(Ω/2) = det / (|a||b||c| + (a·b)|c| + (b·c)|a| + (c·a)|b|).
+  const double denominator = sum_ * c_length + bc * a_length_ + ca * b_length_;
+  omega_ = determinant_ > 0 ? 2 * std::atan2(determinant_, denominator) : 0;
+}
+
+Vec2d SphericalTriangle::sample(const Vec2d& u) const {
+  // 1. The point p = a + t e on edge a→c for which the triangle (a, b, p) has the solid angle σ = u Ω.
+  // In tan(σ/2) = det(a,b,p)/(…) the numerator is t det(a,b,c) and only |p| is not linear in t:
+  //   α t = γ (|a| + |p|),  γ = sin(σ/2) (|a||b| + a·b),  α = cos(σ/2) det − sin(σ/2) (|b| a·e + |a| b·e).
+  // Squared and divided by t: t = 2γ (α|a| + γ a·e) / ((α − γ|e|)(α + γ|e|)).
+  const double half = 0.5 * u.x * omega_, s = std::sin(half);
+  const double gamma = s * sum_, alpha = std::cos(half) * determinant_ - s * slope_;
+  const double numerator = 2 * gamma * (alpha * a_length_ + gamma * a_.dot(edge_));
+  const double denominator = (alpha - gamma * edge_length_) * (alpha + gamma * edge_length_);
+  // t is in [0,1]; rounding may leave it by a hair, or spoil the denominator where x all but touches the
+  // edge.
+  const double t = numerator < denominator ? std::max(numerator / denominator, 0.0) : 1.0;
+
+  // 2. The point q = b + w (p − b) whose angle θ from b has 1 − cosθ = y m, where m = 1 − cos of the angle
+  // between b and p, for the solid angle next to b grows with 1 − cosθ. With τ = tan(θ/2):
+  //   w : 1−w = |b| sinθ : |p| sin(Θ−θ) = |b| τ : |p| m (1−y)(√g + √m τ) / ((2 − y m)(√m + √g τ)),  g = 2 −
+  //   m.
+  // Every term is positive. m = |b×p|²/(|b||p| (|b||p| + b·p)), and b × p = b × (p − b).
+  const Vec3d p = a_ + t * edge_, to_p = base_ + t * edge_;
+  const double p_length = p.length(), product = b_length_ * p_length;
+  const double g = (product + b_.dot(p)) / product;
+  const double m = std::min(b_.cross(to_p).length2() / (product * product * g), 2.0);
+  const double y = u.y, tau = std::sqrt(y * m / (2 - y * m)), root_m = std::sqrt(m), root_g = std::sqrt(g);
+  const double near = b_length_ * tau;
+  const double far =
+      p_length * m * (1 - y) * (root_g + root_m * tau) / ((2 - y * m) * (root_m + root_g * tau));
+  const double w = near + far > 0 ? near / (near + far) : 0;
+
+  // q = (1−w) b + w ((1−t) a + t c), in the order of the constructor.
+  const double weights[3] = {w * (1 - t), 1 - w, w * t};
+  return {weights[(4 - turn_) % 3], weights[(5 - turn_) % 3]};
+}
+
+}  // namespace penumbra

@@ -1,0 +1,29 @@
+#pragma once
+// A triangle seen from x: its solid angle and Arvo's area-preserving map (Arvo 1995), written in the plane of
+// the triangle instead of on the sphere. No angle of the spherical triangle is ever formed, so that slivers
+// and tiny triangles keep their digits. Derivations: README.md.
+#include "scenes/math.h"
+
+namespace penumbra {
+
+class SphericalTriangle {
+ public:
+  /// Vertices minus x. The triangle is seen only from the side of (b−a) × (c−a); else its solid angle is 0.
+  SphericalTriangle(const Vec3d& a, const Vec3d& b, const Vec3d& c);
+
+  /// sr
+  double solid_angle() const { return omega_; }
+
+  /// Barycentric weights (of b, of c) of a point uniform in solid angle. solid_angle() must not be 0.
+  Vec2d sample(const Vec2d& u) const;
+
+ private:
+  Vec3d a_, b_, edge_, base_;  ///< a, farthest from x; b; c − a; a − b
+  int turn_;                   ///< a_ is the constructor's vertex number turn_, and the others follow it
+  double determinant_, omega_ = 0;
+  double a_length_, b_length_, edge_length_;
+  double sum_;    ///< |a||b| + a·b
+  double slope_;  ///< |b| a·e + |a| b·e, e = c − a
+};
+
+}  // namespace penumbra
