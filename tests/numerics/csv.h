@@ -42,6 +42,9 @@ class Row {
   double number(const std::string& column) const { return static_cast<double>(reference(column)); }
   int integer(const std::string& column) const { return static_cast<int>(reference(column)); }
 
+  /// `17 graze_in`: which row a message speaks of.
+  std::string label() const { return std::string(text("id")).append(" ").append(text("cls")); }
+
   /// Columns <prefix>x, <prefix>y, <prefix>z.
   Vec3f vector(const std::string& prefix) const {
     return {single(prefix + "x"), single(prefix + "y"), single(prefix + "z")};
