@@ -103,10 +103,6 @@ static absl::Status check_spec(const JobSpec& spec) {
   return absl::OkStatus();
 }
 
-bool is_digest(std::string_view text) {
-  return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
-}
-
 v1::PixelRect to_proto(const PixelRect& rect) {
   v1::PixelRect out;
   out.set_x0(rect.x0);

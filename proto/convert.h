@@ -3,6 +3,7 @@
 // checks every range and returns InvalidArgument with the name of the field at fault, so that nothing
 // behind it needs to distrust what it gets. from_proto(to_proto(x)) == x.
 #include "absl/status/statusor.h"
+#include "proto/blob_folder.h"
 #include "proto/job.h"
 #include "proto/job.pb.h"
 #include "proto/render.pb.h"
@@ -11,9 +12,6 @@
 #include "proto/worker.pb.h"
 
 namespace penumbra {
-
-/// 64 lower-case hexadecimal digits.
-bool is_digest(std::string_view text);
 
 v1::PixelRect to_proto(const PixelRect& rect);
 v1::JobSpec to_proto(const JobSpec& spec);

@@ -1,0 +1,87 @@
+#pragma once
+// Immutable bytes by their SHA-256 in a folder, <root>/<first two hex digits>/<digest>: the server's store
+// and the workers' cache. What is there under a digest has that digest: bytes are written to a temporary
+// name, verified, made durable and renamed.
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "proto/job.h"
+#include "proto/sha256.h"
+
+namespace penumbra {
+
+/// 64 lower-case hexadecimal digits.
+bool is_digest(std::string_view text);
+
+/// Bytes on their way into a folder. If it is destroyed before finish(), what was written stays and can be
+/// gone on with.
+class BlobWriter {
+ public:
+  ~BlobWriter();
+  BlobWriter(const BlobWriter&) = delete;
+  BlobWriter& operator=(const BlobWriter&) = delete;
+
+  /// InvalidArgument beyond the announced size; ResourceExhausted if the disk is full.
+  absl::Status append(std::string_view bytes);
+  /// Verifies, makes durable, renames. InvalidArgument if size or digest do not fit: then the bytes are
+  /// thrown away.
+  absl::Status finish();
+
+ private:
+  friend class BlobFolder;
+  BlobWriter(std::string path, std::string target, Digest digest, int file, uint64_t size)
+      : path_(std::move(path)),
+        target_(std::move(target)),
+        digest_(std::move(digest)),
+        file_(file),
+        size_(size) {}
+
+  std::string path_, target_;
+  Digest digest_;
+  int file_;  ///< open and locked as long as the writer lives
+  uint64_t size_, written_ = 0;
+  Sha256 hash_;
+};
+
+/// Safe for several threads and for several processes that share the folder.
+class BlobFolder {
+ public:
+  /// Makes the folder if need be; unfinished files that nobody has touched for a day go.
+  static absl::StatusOr<BlobFolder> open(const std::string& root);
+
+  const std::string& root() const { return root_; }
+  /// Requires is_digest(digest): no other name ever reaches the disk.
+  std::string path_of(const Digest& digest) const;
+  /// Size of the blob; none if it is not there.
+  std::optional<uint64_t> size(const Digest& digest) const;
+  /// Bytes of an unfinished writer that can be gone on with.
+  uint64_t partial(const Digest& digest) const;
+
+  /// The whole blob, verified. NotFound; DataLoss if the bytes no longer have the digest: the file is then
+  /// removed, so that it can be stored anew.
+  absl::StatusOr<std::string> read(const Digest& digest) const;
+
+  /// Stores bytes; harmless if they are there. Durable only after sync().
+  absl::Status put(const Digest& digest, std::string_view bytes) const;
+  /// Bytes and names of these blobs are on disk when this returns.
+  absl::Status sync(const std::vector<Digest>& digests) const;
+
+  /// A writer from `offset` on. FailedPrecondition if that is beyond what is kept (0 starts anew); Aborted
+  /// while another writer has the same blob.
+  absl::StatusOr<std::unique_ptr<BlobWriter>> write(const Digest& digest, uint64_t size,
+                                                    uint64_t offset) const;
+
+ private:
+  explicit BlobFolder(std::string root) : root_(std::move(root)) {}
+  std::string partial_path(const Digest& digest) const;
+
+  std::string root_;
+};
+
+}  // namespace penumbra

@@ -1,0 +1,87 @@
+#pragma once
+// What a job store keeps, and the changes to it that the scheduler asks for. The scheduler itself knows
+// no disk: it hands out changes, and nothing is acknowledged to anyone before they are durable.
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "proto/job.h"
+#include "proto/run.h"
+#include "proto/sync.h"
+
+namespace penumbra {
+
+/// Everything about a job except its tasks.
+struct JobHeader {
+  JobId id;
+  std::string request_id;  ///< unique: makes Submit idempotent
+  JobSpec spec;
+  JobState state = JobState::kQueued;
+  FailureKind failure = FailureKind::kNone;
+  std::string message;
+  std::vector<int64_t> passes;  ///< planned, per mix; empty until then
+  bool loaded = false;          ///< `load` and `substitutions` are known
+  LoadReport load;
+  std::vector<Substitution> substitutions;
+  // Seconds since 1970; 0 until it has happened.
+  double submitted_unix = 0, first_lease_unix = 0, first_result_unix = 0, last_result_unix = 0;
+  double finished_unix = 0;
+  double worker_cpu_seconds = 0;
+  double scheduler_cpu_seconds = 0;
+  bool operator==(const JobHeader&) const = default;
+};
+
+/// The incarnation that holds a lease, with what is needed to recognise its successor.
+struct LeaseHolder {
+  std::string worker;      ///< WorkerInfo.id
+  std::string host, name;  ///< identity that survives restarts
+  bool operator==(const LeaseHolder&) const = default;
+};
+
+// The closed set of changes. A new one needs: its struct here, its name in Change, its statement in
+// sqlite_store.cpp.
+
+/// Writes a job's header, new or not.
+struct PutJob {
+  JobHeader job;
+};
+/// A lease was granted: the task's epoch and holder.
+struct PutLease {
+  LeaseId lease;
+  LeaseHolder holder;
+};
+/// A lease ended without a result. The epoch stays, or a late result could not be told from a new one.
+struct DropLease {
+  LeaseId lease;
+};
+/// A result was accepted; ends the lease.
+struct PutResult {
+  LeaseId lease;
+  Digest result;  ///< empty for a pilot
+  std::vector<MixCost> costs;
+  std::string worker;
+};
+/// A worker has contributed a result.
+struct PutWorker {
+  WorkerInfo worker;
+};
+
+using Change = std::variant<PutJob, PutLease, DropLease, PutResult, PutWorker>;
+
+/// A job as it comes back from a store.
+struct StoredJob {
+  JobHeader header;
+  struct Lease {
+    LeaseId lease;
+    LeaseHolder holder;  ///< worker is empty if the lease has ended
+  };
+  std::vector<Lease> leases;
+  std::vector<PutResult> results;
+};
+
+struct StoredState {
+  std::vector<StoredJob> jobs;  ///< in order of submission
+  std::vector<WorkerInfo> workers;
+};
+
+}  // namespace penumbra

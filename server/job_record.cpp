@@ -1,0 +1,124 @@
+#include "server/job_record.h"
+
+#include "proto/status.h"
+
+namespace penumbra {
+
+JobRecord::JobRecord(JobHeader h) : header(std::move(h)), tiles_(tiles_of(header.spec)) {
+  if (!needs_pilot(header.spec)) return;
+  first_run_id_ = tiles_.size();
+  stage_total_ = tiles_.size();
+  add_tasks(tiles_.size());
+}
+
+void JobRecord::add_tasks(uint64_t count) {
+  const uint64_t first = tasks_.size();
+  tasks_.resize(first + count);
+  results_.resize(first + count);
+  for (uint64_t id = first; id < tasks_.size(); ++id) queue_.insert(queue_.end(), id);
+}
+
+TileTask JobRecord::description(uint64_t id) const {
+  return is_pilot(id) ? pilot_task(spec(), tiles_, id)
+                      : run_task(spec(), *plan_, tiles_, first_run_id_, id - first_run_id_);
+}
+
+double JobRecord::work(uint64_t id) const {
+  const uint64_t index = id - first_run_id_;
+  const uint64_t range = index / tiles_.size();
+  double passes = 0;
+  for (size_t m = 0; m < plan_->passes.size(); ++m)
+    passes += static_cast<double>(plan_->boundaries[range].passes[m] -
+                                  (range == 0 ? 0 : plan_->boundaries[range - 1].passes[m]));
+  return passes * static_cast<double>(tiles_[index % tiles_.size()].area());
+}
+
+double JobRecord::fraction() const {
+  if (plan_) return stage_done_ == stage_total_ ? 1 : work_done_ / work_total_;
+  return stage_total_ == 0 ? 0 : static_cast<double>(stage_done_) / static_cast<double>(stage_total_);
+}
+
+LeaseId JobRecord::lease(const std::string& holder) {
+  PENUMBRA_CHECK(pending() > 0);
+  const uint64_t id = *queue_.begin();
+  queue_.erase(queue_.begin());
+  TaskRecord& task = tasks_[id];
+  task.state = TaskState::kLeased;
+  task.begun = false;
+  task.holder = holder;
+  if (++task.epoch > 1) ++retries_;
+  ++leased_;
+  return {header.id, id, task.epoch};
+}
+
+void JobRecord::release(uint64_t id) {
+  TaskRecord& task = tasks_[id];
+  PENUMBRA_CHECK(task.state == TaskState::kLeased);
+  task.state = TaskState::kPending;
+  task.begun = false;
+  task.holder.clear();
+  queue_.insert(id);
+  --leased_;
+}
+
+void JobRecord::accept(uint64_t id, AcceptedResult result) {
+  TaskRecord& task = tasks_[id];
+  PENUMBRA_CHECK(task.state == TaskState::kLeased);
+  task.state = TaskState::kDone;
+  task.holder.clear();
+  --leased_;
+  results_[id] = std::move(result);
+  if (plan_.has_value() != is_pilot(id)) ++stage_done_;
+  if (!is_pilot(id)) work_done_ += work(id);
+}
+
+absl::Status JobRecord::make_run() {
+  if (header.passes.empty()) {
+    std::vector<std::vector<MixCost>> pilot;
+    for (uint64_t id = 0; id < first_run_id_; ++id) pilot.push_back(results_[id]->costs);
+    ASSIGN_OR_RETURN(header.passes, planned_passes(spec(), pilot));
+  }
+  plan_ = make_plan(spec(), header.passes);
+  stage_done_ = 0;
+  stage_total_ = task_count(*plan_, tiles_);
+  add_tasks(stage_total_);
+  for (size_t m = 0; m < plan_->passes.size(); ++m)
+    work_total_ += static_cast<double>(plan_->passes[m]) * static_cast<double>(spec().crop.area());
+  return absl::OkStatus();
+}
+
+absl::Status JobRecord::restore(const StoredJob& stored) {
+  const auto broken = [&](std::string_view what) {
+    return make_status(absl::StatusCode::kInternal, "job {} in the store: {}", header.id, what);
+  };
+  const auto take = [&](uint64_t id, uint64_t epoch) {
+    queue_.erase(id);
+    tasks_[id].state = TaskState::kLeased;
+    tasks_[id].epoch = epoch;
+    retries_ += epoch - 1;
+    ++leased_;
+  };
+  // Pilot results first: without them there is no plan, and without a plan no run task.
+  for (const bool pilot : {true, false}) {
+    if (!pilot && !header.passes.empty()) {
+      RETURN_IF_ERROR(make_run());
+    }
+    for (const PutResult& result : stored.results) {
+      if (is_pilot(result.lease.task) != pilot) continue;
+      if (result.lease.task >= tasks_.size()) return broken("a result of a task that does not exist");
+      if (tasks_[result.lease.task].state != TaskState::kPending) return broken("two results of a task");
+      take(result.lease.task, result.lease.epoch);
+      accept(result.lease.task, {result.result, result.costs, result.worker});
+    }
+  }
+  for (const StoredJob::Lease& lease : stored.leases) {
+    if (lease.lease.task >= tasks_.size()) return broken("a lease of a task that does not exist");
+    if (tasks_[lease.lease.task].state == TaskState::kDone) continue;
+    take(lease.lease.task, lease.lease.epoch);
+    tasks_[lease.lease.task].holder = lease.holder.worker;
+    if (lease.holder.worker.empty()) release(lease.lease.task);
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace penumbra

@@ -1,0 +1,105 @@
+#pragma once
+// One job as the scheduler sees it: its tasks, who holds them, what was accepted.
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "server/changes.h"
+#include "server/planner.h"
+
+namespace penumbra {
+
+/// Moments on the three clocks that the server's state refers to; always passed in.
+struct Now {
+  double steady = 0;       ///< seconds, monotonic: deadlines
+  double unix_time = 0;    ///< seconds since 1970: for people
+  double process_cpu = 0;  ///< CPU seconds of the server process
+};
+
+enum class TaskState : uint8_t { kPending, kLeased, kDone };
+
+struct TaskRecord {
+  TaskState state = TaskState::kPending;
+  bool begun = false;  ///< the holder has begun to render
+  uint64_t epoch = 0;  ///< of the latest lease; 0: never leased
+  std::string holder;  ///< worker incarnation; empty unless leased
+};
+
+struct AcceptedResult {
+  Digest result;
+  std::vector<MixCost> costs;
+  std::string worker;
+};
+
+/// Who has failed at a task. Reported failures and deaths are counted apart: a death may have had any
+/// cause, and farms kill workers for reasons of their own.
+struct Blame {
+  std::set<std::string> reporters;
+  int reports = 0;
+  std::set<std::string> deaths;
+};
+
+/// Tasks are numbered from 0: first the pilot's (if there is one), then, once planned, the run's.
+class JobRecord {
+ public:
+  explicit JobRecord(JobHeader header);
+
+  JobHeader header;
+  double scheduler_cpu_base = 0;  ///< Now::process_cpu when accounting (re)started
+  std::map<uint64_t, Blame> blames;
+
+  const JobSpec& spec() const { return header.spec; }
+  bool final() const { return is_final(header.state); }
+  const std::vector<PixelRect>& tiles() const { return tiles_; }
+  const std::optional<Plan>& plan() const { return plan_; }
+  uint64_t first_run_id() const { return first_run_id_; }
+
+  uint64_t pending() const { return final() ? 0 : queue_.size(); }
+  uint64_t leased() const { return leased_; }
+  uint64_t retries() const { return retries_; }
+  uint64_t stage_done() const { return stage_done_; }
+  uint64_t stage_total() const { return stage_total_; }
+  /// Of the run, by pixel-passes; of the pilot, by tasks.
+  double fraction() const;
+
+  /// Null for an id that the job does not have (yet).
+  const TaskRecord* task(uint64_t id) const { return id < tasks_.size() ? &tasks_[id] : nullptr; }
+  TileTask description(uint64_t id) const;
+  bool is_pilot(uint64_t id) const { return id < first_run_id_; }
+  /// One per task; empty where nothing was accepted.
+  const std::vector<std::optional<AcceptedResult>>& results() const { return results_; }
+
+  /// Leases the pending task with the lowest id. Requires pending() > 0.
+  LeaseId lease(const std::string& holder);
+  void mark_begun(uint64_t id) { tasks_[id].begun = true; }
+  /// Back to the queue; the epoch stays.
+  void release(uint64_t id);
+  /// Requires a task that is leased.
+  void accept(uint64_t id, AcceptedResult result);
+  /// Every task of the pilot is done and there is no plan yet (at once, for a job without pilot).
+  bool ready_to_plan() const { return !plan_ && stage_done_ == stage_total_; }
+  /// Makes the plan and the run's tasks. Error: what planned_passes says.
+  absl::Status make_run();
+  bool all_done() const { return plan_ && stage_done_ == stage_total_; }
+
+  /// As stored: brings back plan, epochs, leases and results. Internal for a store that contradicts itself.
+  absl::Status restore(const StoredJob& stored);
+
+ private:
+  void add_tasks(uint64_t count);
+  double work(uint64_t id) const;
+
+  std::vector<PixelRect> tiles_;
+  std::optional<Plan> plan_;
+  uint64_t first_run_id_ = 0;
+  std::vector<TaskRecord> tasks_;
+  std::vector<std::optional<AcceptedResult>> results_;
+  std::set<uint64_t> queue_;
+  uint64_t leased_ = 0, retries_ = 0;
+  uint64_t stage_done_ = 0, stage_total_ = 0;
+  double work_done_ = 0, work_total_ = 0;  ///< pixel-passes of the run
+};
+
+}  // namespace penumbra

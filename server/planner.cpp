@@ -1,0 +1,224 @@
+#include "server/planner.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "proto/status.h"
+
+namespace penumbra {
+namespace {
+
+// The pilot of a CPU-seconds budget may cost this share of it.
+constexpr double kPilotShare = 0.05;
+// Passes after which even a cheap pilot knows the cost of a pass well enough.
+constexpr int64_t kMostPilotPasses = 256;
+// Passes of a target-error pilot: the variance of one pass is then known to 1/√(2·(8−1)) per pixel and
+// far better in the mean over pixels.
+constexpr int64_t kVariancePilotPasses = 8;
+// Groups of passes in a run. Fewer and larger groups stratify better; the variance needs several.
+constexpr int64_t kLeastGroups = 8;
+// Tasks as long as these are cheap to administer and short enough to keep all cores busy to the end.
+constexpr double kLeastTaskSeconds = 0.2, kMostTaskSeconds = 0.8;
+constexpr double kTasksPerRun = 256;
+// Ranges of a tile: an endless run gets longer tasks rather than millions of them.
+constexpr double kMostRanges = 1024;
+// A group is rendered within one task, so that it may not grow beyond this.
+constexpr double kMostGroupSeconds = 2;
+// CPU time of one ray and its shading where no measurement may be used. Only sets the size of tasks.
+constexpr double kNominalSecondsPerRay = 1e-6;
+// Where a timeline looks, as shares of all passes. Nearly geometric.
+constexpr double kCheckpoints[] = {1 / 32., 2 / 32.,  3 / 32.,  4 / 32.,  6 / 32.,
+                                   8 / 32., 12 / 32., 16 / 32., 24 / 32., 1};
+
+/// Mixes bits of a tile's and a range's number into a seed (the finaliser of SplitMix64, Steele et al.
+/// 2014); only the interleaving of slices depends on it.
+uint64_t scramble(uint64_t seed, uint64_t value) {
+  uint64_t z = seed + (value + 1) * 0x9e3779b97f4a7c15u;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+
+/// CPU seconds that all mixes together are expected to spend on the image. For a CPU-seconds budget that
+/// is what the budget says; otherwise counted rays.
+double expected_seconds(const JobSpec& spec, const std::vector<int64_t>& passes) {
+  if (const auto* cpu = std::get_if<CpuSecondsBudget>(&spec.budget))
+    return cpu->seconds * static_cast<double>(spec.mixes.size());
+  double rays = 0;
+  for (size_t m = 0; m < passes.size(); ++m)
+    rays += static_cast<double>(passes[m]) * (1 + spec.mixes[m].samples());
+  return rays * static_cast<double>(spec.crop.area()) * kNominalSecondsPerRay;
+}
+
+/// Power of two, so that the patterns of a group are complete nets; 1 for independent samples, whose
+/// variance is best known from single passes.
+int64_t choose_group(const JobSpec& spec, const std::vector<int64_t>& passes, double tile_seconds) {
+  if (spec.sampler == SamplerKind::kIndependent) return 1;
+  const int64_t least = *std::min_element(passes.begin(), passes.end());
+  const int64_t most = *std::max_element(passes.begin(), passes.end());
+  const double seconds_per_pass = tile_seconds / static_cast<double>(most);
+  int64_t group = 1;
+  while (2 * group * kLeastGroups <= least &&
+         static_cast<double>(2 * group) * seconds_per_pass <= kMostGroupSeconds)
+    group *= 2;
+  return group;
+}
+
+struct Share {
+  double share;
+  bool checkpoint;
+};
+
+/// Checkpoints, and between them as many cuts as keep tasks short.
+std::vector<Share> boundary_shares(double first_share, double tile_seconds, double task_seconds) {
+  std::vector<Share> shares;
+  // A very long run shows its first group without waiting for 1/32 of everything.
+  if (first_share < kCheckpoints[0] / 4) shares.push_back({first_share, true});
+  for (const double checkpoint : kCheckpoints) {
+    const double from = shares.empty() ? 0 : shares.back().share;
+    const double cuts = std::ceil((checkpoint - from) * tile_seconds / task_seconds);
+    for (double cut = 1; cut < cuts; ++cut)
+      shares.push_back({from + (checkpoint - from) * cut / cuts, false});
+    shares.push_back({checkpoint, true});
+  }
+  return shares;
+}
+
+/// The whole number of groups nearest to a share; the last boundary has the odd passes too.
+int64_t passes_at(double share, int64_t passes, int64_t group) {
+  if (share == 1) return passes;
+  const auto groups =
+      static_cast<int64_t>(std::llround(share * static_cast<double>(passes) / static_cast<double>(group)));
+  return std::min(groups * group, passes);
+}
+
+absl::StatusOr<int64_t> passes_for_seconds(double budget, const std::vector<std::vector<MixCost>>& pilot,
+                                           size_t mix) {
+  double seconds_per_pass = 0;
+  for (const std::vector<MixCost>& tile : pilot) {
+    if (tile.size() <= mix || tile[mix].passes < 1)
+      return make_status(absl::StatusCode::kInternal, "a pilot task of mix {} has rendered no pass", mix);
+    seconds_per_pass += tile[mix].cpu_seconds / static_cast<double>(tile[mix].passes);
+  }
+  if (!(seconds_per_pass > 0))
+    return make_status(absl::StatusCode::kInternal, "the pilot of mix {} has taken no time", mix);
+  constexpr double kMost = 1e12;  // far beyond any run; keeps the conversion defined
+  return std::max<int64_t>(1, std::llround(std::min(budget / seconds_per_pass, kMost)));
+}
+
+absl::StatusOr<int64_t> passes_for_error(double relmse, const JobSpec& spec,
+                                         const std::vector<std::vector<MixCost>>& pilot, size_t mix) {
+  double sum = 0;
+  for (const std::vector<MixCost>& tile : pilot) {
+    if (tile.size() <= mix || tile[mix].passes < 2)
+      return make_status(absl::StatusCode::kInternal, "a pilot task of mix {} has no variance", mix);
+    sum += tile[mix].relative_variance;
+  }
+  const double one_pass = sum / (3.0 * static_cast<double>(spec.crop.area()));
+  constexpr double kMost = 1e12;
+  return std::max<int64_t>(2, static_cast<int64_t>(std::ceil(std::min(one_pass / relmse, kMost))));
+}
+
+}  // namespace
+
+std::vector<PixelRect> tiles_of(const JobSpec& spec) {
+  std::vector<PixelRect> tiles;
+  for (int y = spec.crop.y0; y < spec.crop.y1; y += spec.tile)
+    for (int x = spec.crop.x0; x < spec.crop.x1; x += spec.tile)
+      tiles.push_back({x, y, std::min(x + spec.tile, spec.crop.x1), std::min(y + spec.tile, spec.crop.y1)});
+  return tiles;
+}
+
+bool needs_pilot(const JobSpec& spec) {
+  return spec.plan.empty() && !std::holds_alternative<SppBudget>(spec.budget);
+}
+
+TileTask pilot_task(const JobSpec& spec, const std::vector<PixelRect>& tiles, uint64_t index) {
+  PENUMBRA_CHECK(index < tiles.size());
+  TileTask task;
+  task.id = index;
+  task.kind = TaskKind::kPilot;
+  task.tile = tiles[index];
+  task.shuffle = scramble(spec.seed, index);
+  int64_t passes = kVariancePilotPasses;
+  if (const auto* cpu = std::get_if<CpuSecondsBudget>(&spec.budget)) {
+    passes = kMostPilotPasses;
+    // Tiles share by area, so that small ones at the edges do not cost more than their part.
+    task.pilot_seconds = kPilotShare * cpu->seconds * static_cast<double>(task.tile.area()) /
+                         static_cast<double>(spec.crop.area());
+  }
+  task.passes.assign(spec.mixes.size(), {0, passes});
+  return task;
+}
+
+absl::StatusOr<std::vector<int64_t>> planned_passes(const JobSpec& spec,
+                                                    const std::vector<std::vector<MixCost>>& pilot) {
+  if (!spec.plan.empty()) return spec.plan;
+  if (const auto* spp = std::get_if<SppBudget>(&spec.budget))
+    return std::vector<int64_t>(spec.mixes.size(), spp->passes);
+  std::vector<int64_t> passes;
+  for (size_t m = 0; m < spec.mixes.size(); ++m) {
+    if (const auto* cpu = std::get_if<CpuSecondsBudget>(&spec.budget)) {
+      ASSIGN_OR_RETURN(const int64_t count, passes_for_seconds(cpu->seconds, pilot, m));
+      passes.push_back(count);
+    } else {
+      const double relmse = std::get<TargetErrorBudget>(spec.budget).relmse;
+      ASSIGN_OR_RETURN(const int64_t count, passes_for_error(relmse, spec, pilot, m));
+      passes.push_back(count);
+    }
+  }
+  return passes;
+}
+
+Plan make_plan(const JobSpec& spec, const std::vector<int64_t>& passes) {
+  PENUMBRA_CHECK(passes.size() == spec.mixes.size());
+  Plan plan;
+  plan.passes = passes;
+  const double seconds = expected_seconds(spec, passes);
+  // Of a full tile: smaller ones at the edges must not shrink the tasks of all others.
+  const double tile_area =
+      std::min<double>(static_cast<double>(spec.tile) * spec.tile, static_cast<double>(spec.crop.area()));
+  const double tile_seconds = seconds * tile_area / static_cast<double>(spec.crop.area());
+  plan.group = choose_group(spec, passes, tile_seconds);
+  const double task_seconds = std::max(
+      std::clamp(seconds / kTasksPerRun, kLeastTaskSeconds, kMostTaskSeconds), tile_seconds / kMostRanges);
+  const double most = static_cast<double>(*std::max_element(passes.begin(), passes.end()));
+
+  std::vector<int64_t> before(passes.size(), 0);
+  for (const auto& [share, checkpoint] :
+       boundary_shares(static_cast<double>(plan.group) / most, tile_seconds, task_seconds)) {
+    PassBoundary boundary{{}, checkpoint};
+    for (size_t m = 0; m < passes.size(); ++m)
+      boundary.passes.push_back(std::max(before[m], passes_at(share, passes[m], plan.group)));
+    if (boundary.passes == before) {
+      // Too few passes for this cut: the boundary that is already there serves the checkpoint.
+      if (checkpoint && !plan.boundaries.empty()) plan.boundaries.back().checkpoint = true;
+      continue;
+    }
+    before = boundary.passes;
+    plan.boundaries.push_back(std::move(boundary));
+  }
+  return plan;
+}
+
+uint64_t task_count(const Plan& plan, const std::vector<PixelRect>& tiles) {
+  return plan.boundaries.size() * tiles.size();
+}
+
+TileTask run_task(const JobSpec& spec, const Plan& plan, const std::vector<PixelRect>& tiles,
+                  uint64_t first_id, uint64_t index) {
+  PENUMBRA_CHECK(index < task_count(plan, tiles));
+  const uint64_t range = index / tiles.size();
+  TileTask task;
+  task.id = first_id + index;
+  task.tile = tiles[index % tiles.size()];
+  for (size_t m = 0; m < plan.passes.size(); ++m) {
+    const int64_t begin = range == 0 ? 0 : plan.boundaries[range - 1].passes[m];
+    task.passes.push_back({begin, plan.boundaries[range].passes[m]});
+  }
+  task.group = plan.group;
+  task.shuffle = scramble(spec.seed, first_id + index);
+  return task;
+}
+
+}  // namespace penumbra
