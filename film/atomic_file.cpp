@@ -14,7 +14,7 @@ namespace {
 
 absl::Status system_fault(const std::string& path, const char* verb, int error) {
   const auto code = error == ENOSPC || error == EDQUOT ? absl::StatusCode::kResourceExhausted
-                                                       : absl::StatusCode::kUnavailable;
+                                                       : absl::StatusCode::kFailedPrecondition;
   return make_status(code, "{}: cannot {}: {}", path, verb, std::strerror(error));
 }
 

@@ -38,7 +38,7 @@ struct BlockError {
 };
 
 /// Percentile interval of the ratio sum / pixels under resampling of whole blocks.
-std::optional<Interval> bootstrap(const std::vector<BlockError>& blocks) {
+std::optional<ConfidenceInterval> bootstrap(const std::vector<BlockError>& blocks) {
   if (blocks.size() < 2) return std::nullopt;
   SplitMix random;
   std::vector<double> means;
@@ -54,7 +54,7 @@ std::optional<Interval> bootstrap(const std::vector<BlockError>& blocks) {
   }
   std::sort(means.begin(), means.end());
   const auto at = [&](double p) { return means[static_cast<size_t>(std::lround(p * (kResamples - 1)))]; };
-  return Interval{at((1 - kConfidence) / 2), at((1 + kConfidence) / 2)};
+  return ConfidenceInterval{at((1 - kConfidence) / 2), at((1 + kConfidence) / 2)};
 }
 
 /// Mean of the values but for the largest `share` of them (at least one is kept).

@@ -16,7 +16,7 @@ inline constexpr double kRelMseEpsilon = 1e-2;
 struct ErrorFigures {
   PixelRect region;                   ///< what was compared
   double relmse = 0;                  ///< mean of (I-R)²/(R²+ε); raw, the floor is not subtracted
-  std::optional<Interval> relmse_ci;  ///< 95 %; nothing with fewer than two blocks
+  std::optional<ConfidenceInterval> relmse_ci;  ///< 95 %; nothing with fewer than two blocks
   double trimmed_relmse = 0;          ///< the same without the worst 0.1 % of pixels
   double mse = 0;                     ///< mean of (I-R)²
   /// mean of s²/(R²+ε), s the reference's standard error: what relMSE a perfect image would show.

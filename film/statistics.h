@@ -9,9 +9,9 @@
 
 namespace penumbra {
 
-struct Interval {
+struct ConfidenceInterval {
   double low = 0, high = 0;
-  bool operator==(const Interval&) const = default;
+  bool operator==(const ConfidenceInterval&) const = default;
 };
 
 /// z with P(Z <= z) = p for a standard normal Z; p in (0,1).
@@ -65,7 +65,7 @@ ZTest z_test(std::span<const double> a, std::span<const double> b, std::span<con
 /// slope from the residuals (Student's t, n - 2 degrees of freedom).
 struct PowerLaw {
   double slope = 0, intercept = 0;
-  Interval ci;
+  ConfidenceInterval ci;
 };
 /// Nothing with fewer than three points, a coordinate that is not positive and finite, or equal x.
 std::optional<PowerLaw> fit_power_law(std::span<const double> x, std::span<const double> y,
