@@ -24,28 +24,45 @@ class Bsdf {
   static constexpr int kMostLobes = 8;
 
   Bsdf(const SurfacePoint& point, const Vec3f& ns);
-  /// A ninth lobe is a programmer's fault.
-  void add(const Lobe& lobe);
+  /// `scale` multiplies f (mixed materials); a black one adds nothing. A ninth lobe is a programmer's fault.
+  void add(const Lobe& lobe, const Rgb& scale = Rgb(1));
 
   /// Sum of the non-specular lobes that serve this pair of directions.
   Rgb f(const Vec3f& wo, const Vec3f& wi) const;
-  /// Density of sample() over the non-specular lobes at wi. Zero where it cannot reach.
+  /// Density of sample() over the non-specular lobes at wi, sr⁻¹. Zero where it cannot reach.
   double pdf(const Vec3f& wo, const Vec3f& wi) const;
   /// A direction from the non-specular lobes; empty if there is none or the sample failed.
   std::optional<BsdfSample> sample(const Vec3f& wo, const Vec2d& u, double choice) const;
   /// The specular lobes one by one: index in [0, specular_count()).
-  int specular_count() const;
+  int specular_count() const { return specular_; }
   std::optional<BsdfSample> sample_specular(const Vec3f& wo, int index) const;
 
-  bool has_non_specular() const;
+  bool has_non_specular() const { return count_ > specular_; }
   /// May light from below the geometric horizon matter? Then lines must not be clipped to it.
-  bool transmits() const;
+  bool transmits() const { return transmits_; }
   const Vec3f& ns() const { return ns_; }
 
  private:
+  struct Pair;
+  /// One lobe of the mixture: its scale, and its share of the samples (unnormalised; 0 for specular).
+  struct Weighted {
+    Lobe lobe;
+    Rgb scale;
+    float weight = 0;
+  };
+
+  Vec3d to_local(const Vec3f& w) const;
+  Vec3f to_world(const Vec3d& w) const;
+  Pair pair(const Vec3f& wo, const Vec3f& wi) const;
+  Rgb f(const Pair& directions) const;
+  double pdf(const Pair& directions) const;
+  const Weighted& choose(double choice) const;
+
   Vec3f ng_, ns_, ss_, ts_;
-  std::array<Lobe, kMostLobes> lobes_;
-  int count_ = 0;
+  std::array<Weighted, kMostLobes> lobes_;
+  int count_ = 0, specular_ = 0;
+  float total_weight_ = 0;
+  bool transmits_ = false;
 };
 
 }  // namespace penumbra
