@@ -1,0 +1,136 @@
+// Every strategy against every other on scenes of our own: they estimate the same picture by different
+// roads, so their block means must agree (z-tests, Šidák over all pairs and blocks).
+#include <gtest/gtest.h>
+
+#include "film/statistics.h"
+#include "tests/support/render.h"
+
+namespace penumbra {
+namespace {
+
+constexpr int kWidth = 64, kHeight = 48;
+
+/// Renders the mixes and z-tests all pairs; prints one line per mix.
+void expect_agreement(const ScenePtr& scene, const std::vector<std::string>& mixes, int64_t passes,
+                      SamplerKind sampler = SamplerKind::kIndependent, int64_t group = 1) {
+  ASSERT_TRUE(scene);
+  JobSpec spec = test::job(kWidth, kHeight, mixes, passes);
+  spec.sampler = sampler;
+  spec.max_depth = 3;
+  const test::Rendered rendered = test::render(*scene, spec, group);
+  std::vector<std::vector<Block>> all;
+  for (size_t m = 0; m < mixes.size(); ++m) {
+    EXPECT_EQ(rendered.costs[m].non_finite, 0u) << mixes[m];
+    all.push_back(blocks(rendered.images[m], spec.crop));
+  }
+  std::vector<double> a, b, variance;
+  std::vector<std::string> names;
+  for (size_t i = 0; i < all.size(); ++i)
+    for (size_t j = i + 1; j < all.size(); ++j)
+      for (size_t k = 0; k < all[i].size(); ++k)
+        for (int c = 0; c < 3; ++c) {
+          a.push_back(all[i][k].mean[c]);
+          b.push_back(all[j][k].mean[c]);
+          variance.push_back(all[i][k].variance[c] + all[j][k].variance[c]);
+          names.push_back(mixes[i] + " against " + mixes[j] + ", block " + std::to_string(k));
+        }
+  const ZTest z = z_test(a, b, variance, 0.001);
+  ASSERT_GT(z.compared, 0);
+  EXPECT_TRUE(z.passes()) << z.rejected << " of " << z.compared << " rejected; worst |z| " << z.largest << " (limit "
+                          << z.threshold << "): " << names[size_t(z.worst)] << ": " << a[size_t(z.worst)] << " and "
+                          << b[size_t(z.worst)];
+}
+
+const std::string kHead = R"(LookAt 0 3 6  0 0.6 0  0 1 0
+Camera "perspective" "float fov" 40
+Film "image" "integer xresolution" 64 "integer yresolution" 48
+WorldBegin
+Material "matte" "rgb Kd" [ 0.5 0.6 0.7 ]
+Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ] "point P" [ -4 0 -4  -4 0 4  4 0 4  4 0 -4 ]
+)";
+const std::string kBlocker = R"(Material "plastic" "rgb Kd" [ 0.4 0.2 0.2 ] "rgb Ks" [ 0.4 0.4 0.4 ] "float roughness" 0.05
+Shape "trianglemesh" "integer indices" [ 0 1 2  0 2 3  0 1 4 ] "point P" [ -0.8 0.5 -0.4  0.7 0.6 -0.5  0.8 0.8 0.5  -0.6 0.7 0.4  0 1.3 0 ]
+)";
+std::string area_light(const std::string& shape, const std::string& more = "") {
+  return "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [ 8 7 6 ] " + more + "\nMaterial \"matte\" \"rgb Kd\" 0\n" +
+         shape + "\nAttributeEnd\n";
+}
+const std::string kQuad = R"(Shape "quad" "point o" [ -0.7 2.2 -0.5 ] "vector u" [ 1.4 0 0 ] "vector v" [ 0 0 0.9 ])";
+
+TEST(Agreement, RectangleLight) {
+  expect_agreement(test::load_text(kHead + kBlocker + area_light(kQuad)),
+                   {"bsdf:8", "area:2", "sa:2", "line-area@0:2", "line-area@90:1", "line-area@33:2", "line-sa@u:2",
+                    "line-sa@v:1", "bsdf:1+sa:1", "bsdf:1+line-sa@u:2", "line-sa@u:1+line-sa@v:1",
+                    "area:1+line-area@90:1", "line-area@0:1+line-area@90:1/average", "bsdf:1+line-sa@v:2/free",
+                    "sa:1+line-area@45:1/free", "bsdf:1+sa:2/power", "bsdf:1+line-sa@u:1/power"},
+                   64);
+}
+
+TEST(Agreement, StratifiedAndSobolSamplers) {
+  for (SamplerKind sampler : {SamplerKind::kStratified, SamplerKind::kSobol})
+    expect_agreement(test::load_text(kHead + kBlocker + area_light(kQuad)),
+                     {"sa:4", "line-sa@u:4", "bsdf:2+line-sa@v:2", "line-area@60:3"}, 64, sampler, 8);
+}
+
+TEST(Agreement, ObliqueQuadTriangleAndTwoSided) {
+  expect_agreement(
+      test::load_text(kHead + kBlocker +
+                      area_light(R"(Shape "quad" "point o" [ -2 1.2 -1 ] "vector u" [ 0.9 0.2 0 ] "vector v" [ 0.3 0 0.8 ])",
+                                 "\"bool twosided\" true") +
+                      area_light(R"(Shape "trianglemesh" "integer indices" [ 0 1 2 ] "point P" [ 0.5 1.9 -0.5  1.9 1.7 -0.4  1 1.6 0.8 ])",
+                                 "\"bool twosided\" true")),
+      {"bsdf:8", "area:2", "sa:2", "line-area@0:2", "line-area@70:2", "line-sa@v:1", "bsdf:1+line-area@20:2"}, 64);
+}
+
+TEST(Agreement, CurvedLights) {
+  expect_agreement(
+      test::load_text(kHead + kBlocker +
+                      area_light(R"(Translate -1.5 1.6 0 Shape "sphere" "float radius" 0.4)") +
+                      area_light(R"(Translate 1.5 1.9 0 Rotate 100 1 0 0 Shape "disk" "float radius" 0.5)") +
+                      area_light(R"(Translate 0 1.4 -1.5 Shape "cylinder" "float radius" 0.2 "float zmin" -0.5 "float zmax" 0.5)")),
+      {"bsdf:8", "area:3", "sa:3", "line-sa@u:2", "bsdf:2+sa:2"}, 96);
+}
+
+TEST(Agreement, EnvironmentAndDeltaLights) {
+  expect_agreement(test::load_text(kHead + kBlocker + R"(LightSource "infinite" "rgb L" [ 0.3 0.4 0.6 ]
+LightSource "point" "rgb I" [ 3 3 3 ] "point from" [ 1 2 1 ]
+LightSource "distant" "rgb L" [ 0.5 0.5 0.4 ] "point from" [ 1 3 1 ] "point to" [ 0 0 0 ]
+)"),
+                   {"bsdf:4", "sa:4", "bsdf:2+sa:2", "line-sa@u:2"}, 96);
+}
+
+TEST(Agreement, TranslucentReceiverBetweenLights) {
+  expect_agreement(
+      test::load_text(kHead + R"(Material "translucent" "rgb Kd" [ 0.4 0.4 0.4 ] "rgb Ks" [ 0 0 0 ] "rgb reflect" [ 0.5 0.5 0.5 ] "rgb transmit" [ 0.5 0.5 0.5 ]
+Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ] "point P" [ -1.5 0.2 0  1.5 0.2 0  1.5 1.9 -0.3  -1.5 1.9 -0.3 ]
+)" + area_light(R"(Shape "quad" "point o" [ -0.5 2.4 -1.8 ] "vector u" [ 1 0 0 ] "vector v" [ 0 0 3.2 ])")),
+      {"bsdf:8", "sa:4", "line-sa@u:2", "line-sa@v:2", "line-area@90:2", "bsdf:1+line-sa@v:2"}, 96);
+}
+
+TEST(Agreement, ManyLightsAreDrawn) {
+  std::string text = kHead + kBlocker;
+  for (int i = 0; i < 24; ++i)
+    text += area_light("Translate " + std::to_string(-2.2 + 0.8 * (i % 6)) + " 0 " + std::to_string(-1.6 + 0.9 * (i / 6)) +
+                       R"( Shape "quad" "point o" [ 0 2 0 ] "vector u" [ 0.3 0 0 ] "vector v" [ 0 0 0.25 ])");
+  expect_agreement(test::load_text(text), {"bsdf:8", "sa:1", "bsdf:2+sa:1", "bsdf:1+line-sa@u:1", "line-sa@v:1"}, 32);
+}
+
+TEST(Agreement, InstancesAndAlpha) {
+  expect_agreement(
+      test::load_text(kHead + R"(Texture "holes" "float" "checkerboard" "float uscale" 6 "float vscale" 6 "float tex1" 0 "float tex2" 1
+ObjectBegin "slat"
+Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ] "point P" [ -1 0 -0.06  1 0 -0.06  1 0.03 0.06  -1 0.03 0.06 ]
+ObjectEnd
+)" + [] {
+        std::string s;
+        for (int i = 0; i < 9; ++i)
+          s += "AttributeBegin Translate 0 0.9 " + std::to_string(-1 + 0.25 * i) + " Rotate " + std::to_string(7 * i) +
+               " 0 1 0 ObjectInstance \"slat\" AttributeEnd\n";
+        return s;
+      }() + R"(Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ] "point P" [ -1.5 1.2 -1  0.2 1.2 -1  0.2 1.2 1  -1.5 1.2 1 ] "float uv" [ 0 0 1 0 1 1 0 1 ] "texture alpha" "holes"
+)" + area_light(kQuad)),
+      {"bsdf:8", "sa:2", "line-area@0:2", "line-sa@u:2", "line-sa@v:2", "bsdf:1+line-sa@u:2", "area:1+line-sa@v:1"}, 64);
+}
+
+}  // namespace
+}  // namespace penumbra
