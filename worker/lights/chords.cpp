@@ -6,17 +6,8 @@
 
 namespace penumbra {
 
-/// A corner minus the first one, in the plane: r along the chords, s across them.
-struct ParallelChords::Corner {
-  Vec3d position;
-  double r = 0, s = 0;
-};
-
-namespace {
-
 /// The corners from the least offset s to the greatest, one way round.
-template <class Corner>
-class Chain {
+class ParallelChords::Chain {
  public:
   Chain(std::span<const Corner> corners, int step) {
     const auto by_offset = [](const Corner& p, const Corner& q) { return p.s < q.s; };
@@ -40,11 +31,9 @@ class Chain {
   }
 
  private:
-  std::array<Corner, 4> items_;
+  std::array<Corner, kMostCorners> items_;
   size_t size_ = 0;
 };
-
-}  // namespace
 
 ParallelChords::ParallelChords(const LightShape& shape, double radians) {
   // Corners counter-clockwise about the normal.

@@ -1,6 +1,7 @@
 #pragma once
 // The chords of a flat light in one direction: what `line-area@DEG` chooses from. Any convex polygon.
 #include <array>
+#include <span>
 
 #include "worker/lights/line.h"
 
@@ -22,18 +23,24 @@ class ParallelChords {
   /// Of one offset: the chord's ends (minus the polygon's first corner) and its length.
   struct Cut {
     double offset = 0, length = 0;
-    Vec3d a, b;
+    Vec3d a{0, 0, 0}, b{0, 0, 0};
   };
-  struct Corner;
+  /// A corner minus the first one, in the plane: r along the chords, s across them.
+  struct Corner {
+    Vec3d position{0, 0, 0};
+    double r = 0, s = 0;
+  };
+  class Chain;
   void cut_at_corners(std::span<const Corner> corners);
   LightLine line_between(const Cut& below, const Cut& above, double fraction) const;
 
   // Cuts through the corners, by ascending offset; between two of them a chord's ends move linearly.
   static constexpr int kMostCorners = 4;
   std::array<Cut, kMostCorners> cuts_;
-  std::array<double, kMostCorners> area_below_;  ///< area of the polygon below each cut
-  int count_ = 0;                                ///< 0: no chords
-  Vec3d corner_, normal_, across_;  ///< across: unit, in the plane; offsets are measured along it
+  std::array<double, kMostCorners> area_below_{};  ///< area of the polygon below each cut
+  int count_ = 0;                                  ///< 0: no chords
+  Vec3d corner_{0, 0, 0}, normal_{0, 0, 0},
+      across_{0, 0, 0};  ///< across: unit, in the plane; offsets are measured along it
 };
 
 }  // namespace penumbra

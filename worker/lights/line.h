@@ -20,14 +20,14 @@ struct AngularMeasure {
 /// A chord of a light, chosen by a line strategy. P(s) = a + s (b - a), s in [0,1]. A default-made line is
 /// «no such line»: every density on it is 0.
 struct LightLine {
-  Vec3d a, b;
-  Vec3d n;  ///< unit normal of the light's plane, emission side
+  Vec3d a{0, 0, 0}, b{0, 0, 0};
+  Vec3d n{0, 0, 0};  ///< unit normal of the light's plane, emission side
   /// Density per solid angle of a point at s = base(s) * total/visible, in the measure below;
   /// for LengthMeasure: (1/A) r²/cosθ; for AngularMeasure: 1/S.
   double scale = 0;  ///< 1/A or 1/S; 0: no such line
   std::variant<LengthMeasure, AngularMeasure> measure;
   /// a and b without the rounding of large scene offsets: a = corner + from, b = a + along, corner exact.
-  Vec3d corner, from, along;
+  Vec3d corner{0, 0, 0}, from{0, 0, 0}, along{0, 0, 0};
 };
 
 /// `line-area@DEG` on a quad or triangle: direction at `radians` from the first edge (u, or p0→p1),

@@ -45,9 +45,9 @@ double area(const LightShape& shape);
 
 /// A point of a light and how it was found.
 struct LightPoint {
-  Vec3d p;         ///< on the shape
-  Vec3d n;         ///< unit, emission side
-  double pdf = 0;  ///< sr⁻¹ at x; 0: not usable (edge on, or seen from behind)
+  Vec3d p{0, 0, 0};  ///< on the shape
+  Vec3d n{0, 0, 0};  ///< unit, emission side
+  double pdf = 0;    ///< sr⁻¹ at x; 0: not usable (edge on, or seen from behind)
 };
 
 /// `area`: p_A = 1/A. Points that face away from x get pdf 0.

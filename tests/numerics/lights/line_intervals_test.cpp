@@ -8,8 +8,7 @@ std::vector<Interval> visible_intervals(const Row& row) {
   static constexpr const char* kLow[] = {"a0", "a1", "a2"};
   static constexpr const char* kHigh[] = {"b0", "b1", "b2"};
   std::vector<Interval> visible;
-  for (int k = 0; k < row.integer("n"); ++k)
-    visible.push_back({row.single(kLow[k]), row.single(kHigh[k])});
+  for (int k = 0; k < row.integer("n"); ++k) visible.push_back({row.single(kLow[k]), row.single(kHigh[k])});
   return visible;
 }
 
