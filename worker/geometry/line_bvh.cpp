@@ -1,5 +1,6 @@
 #include "worker/geometry/line_bvh.h"
 
+#include <atomic>
 #include <cmath>
 
 #include "proto/status.h"
@@ -201,7 +202,9 @@ absl::StatusOr<LineBvh> build_line_bvh(std::span<const MeshInput> meshes,
                                        std::span<const ObjectInput> objects,
                                        std::span<const InstanceInput> instances, int threads) {
   const TreeBuilder builder(threads);
+  static std::atomic<uint64_t> built{0};
   LineBvh bvh;
+  bvh.id = ++built;
   uint64_t first = 0;
   for (const MeshInput& m : meshes) {
     bvh.first_triangle.push_back(static_cast<uint32_t>(first));
@@ -227,6 +230,12 @@ absl::StatusOr<LineBvh> build_line_bvh(std::span<const MeshInput> meshes,
   }
   RETURN_IF_ERROR(place_instances(bvh, instances, builder));
   return bvh;
+}
+
+uint32_t LineBvh::depth() const {
+  uint32_t below = 0;
+  for (const LineTree& tree : objects) below = std::max(below, tree.depth);
+  return std::max(world.depth, instance_tree.depth + below);
 }
 
 size_t LineBvh::bytes() const {

@@ -20,9 +20,9 @@ struct Box {
 
 /// Bounds of 16 children, relative to the tree's centre and rounded outwards; unused lanes are empty boxes.
 struct alignas(64) LineNode {
-  float lo[3][kWidth], hi[3][kWidth];
-  uint32_t child[kWidth];  ///< of a leaf: its block (or instance); else a node
-  uint32_t leaves = 0;     ///< bit k: child k is a leaf
+  float lo[3][kWidth], hi[3][kWidth];  ///< six rows, one after another
+  uint32_t child[kWidth];              ///< of a leaf: its block (or instance); else a node
+  uint32_t leaves = 0;                 ///< bit k: child k is a leaf
 };
 
 /// 16 triangles as the scene has them; unused lanes repeat the first one, which changes no union.
@@ -51,23 +51,35 @@ struct LineInstance {
 };
 
 struct LineBvh {
+  uint64_t id = 0;  ///< of this hierarchy, in this process
   LineTree world;
   std::vector<LineTree> objects;
   LineTree instance_tree;  ///< leaves are single instances
   std::vector<LineInstance> instances;
   std::vector<uint32_t> first_triangle;  ///< of each mesh, in a numbering of all meshes' triangles
 
+  /// Nodes on the longest path, through instances as well.
+  uint32_t depth() const;
   size_t bytes() const;
   size_t triangles() const;
 };
+
+/// A range of triangle numbers that never hide (the light's own surface).
+struct Excluded {
+  uint32_t first = 0, count = 0;
+  bool holds(uint32_t id) const { return id - first < count; }
+};
+
+/// What of the query's light lies in a tree: the world's (instance kNone) or a placed object's.
+inline Excluded excluded_in(const LineBvh& bvh, const LineQuery& query, uint32_t instance) {
+  if (query.light.mesh == kNone || query.light.instance != instance) return {};
+  return {bvh.first_triangle[query.light.mesh] + query.light.primitive, query.light_primitives};
+}
 
 /// Errors: InvalidArgument for an instance whose transform is singular or not finite, ResourceExhausted
 /// beyond 2^32 triangles.
 absl::StatusOr<LineBvh> build_line_bvh(std::span<const MeshInput> meshes,
                                        std::span<const ObjectInput> objects,
                                        std::span<const InstanceInput> instances, int threads);
-
-/// What a query carries from call to call on one thread: buffers only, nothing that changes an answer.
-struct LineWorkspace;
 
 }  // namespace penumbra

@@ -91,16 +91,20 @@ LineFan make_fan(const Vec3d& x, const Vec3d& a, const Vec3d& b, double reach) {
   if (!(light > 0)) return fan;
 
   // |t(q)| carries at most (3 roundings of the products and sums + 1 of t's coefficients + 1 of q) u |t| |q|.
-  const double error_per_length = 5 * kFloatRoundoff * t.length();
+  const double error_per_length = 5 * kFloatRoundoff * (std::abs(t.x) + std::abs(t.y) + std::abs(t.z));
+  const double farther_end = std::max(largest(a), largest(b));
   fan.g = Vec3f(fan.g_exact = n);
   fan.beta = Vec3f(fan.beta_exact = beta);
   fan.t = Vec3f(fan.t_exact = t);
   // An occluder hides only what is beyond it: one in the light's own line must not win by a rounding.
-  fan.light = static_cast<float>(light - error_per_length * std::sqrt(std::max(a.length2(), b.length2())));
+  fan.light = static_cast<float>(light - error_per_length * farther_end);
   // Near x the error of t and β is not small against t: v could come out with the wrong sign and hide the
   // whole chord (a floor just below x, parallel to the chord, is the common case). Below 2^10 error bounds
   // the edge is evaluated in double; above, v is wrong by at most 2^-10 of an interval end near x.
   fan.near = static_cast<float>(0x1p10 * error_per_length * reach);
+  // Where a triangle's cut is computed to lie is off by its functionals' errors over their size: relative to
+  // `reach`, a few u / sin(x's angle with the chord), and light / (|t| |a|) is at most that sine's size.
+  fan.slack = 64 * kFloatRoundoff * reach * std::max(1., largest(t) * farther_end / light);
   fan.degenerate = false;
   return fan;
 }

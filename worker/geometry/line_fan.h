@@ -29,6 +29,7 @@ struct LineFan {
   // Double precision: the same fan for the few edges that need it.
   Vec3d x_exact, a, b;  ///< a, b relative to x
   Vec3d g_exact, beta_exact, t_exact;
+  double slack = 0;        ///< length by which boxes are widened, so that no rounding of the above is culled
   bool degenerate = true;  ///< x, a and b are collinear: the fan has no area
 };
 

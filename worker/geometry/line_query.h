@@ -13,12 +13,17 @@ enum class LinePath { kScalar, kAvx2, kAvx512 };
 LinePath widest_line_path();
 const char* name_of(LinePath path);
 
-/// Visible parts of chords that share x. The reference: one query after another, triangle by triangle.
-void visible_scalar(const LineBvh& bvh, std::span<const LineQuery> queries, std::vector<IntervalSet>& out,
-                    QueryCounters& counters);
-
-/// The same by the given path.
+/// Visible parts of chords that share x, by the given path. `out` is resized to queries.size().
 void visible_lines(const LineBvh& bvh, LinePath path, std::span<const LineQuery> queries,
                    std::vector<IntervalSet>& out, QueryCounters& counters);
+
+// The paths; `out` has the right size already. Scalar is the reference: query after query, triangle after
+// triangle.
+void visible_scalar(const LineBvh& bvh, std::span<const LineQuery> queries, std::vector<IntervalSet>& out,
+                    QueryCounters& counters);
+void visible_avx2(const LineBvh& bvh, std::span<const LineQuery> queries, std::vector<IntervalSet>& out,
+                  QueryCounters& counters);
+void visible_avx512(const LineBvh& bvh, std::span<const LineQuery> queries, std::vector<IntervalSet>& out,
+                    QueryCounters& counters);
 
 }  // namespace penumbra

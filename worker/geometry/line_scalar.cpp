@@ -6,24 +6,12 @@
 namespace penumbra {
 namespace {
 
-/// A range of triangle numbers that never hide (the light's own surface).
-struct Excluded {
-  uint32_t first = 0, count = 0;
-  bool holds(uint32_t id) const { return id - first < count; }
-};
-
-Excluded excluded_in(const LineBvh& bvh, const LineQuery& query, uint32_t instance) {
-  if (query.light.mesh == kNone || query.light.instance != instance) return {};
-  return {bvh.first_triangle[query.light.mesh] + query.light.primitive, query.light_primitives};
-}
-
 /// Can a box relative to the tree's centre meet the fan? Compares bounds only: the fan's own box, and the
 /// two sides of its plane. Slack covers the rounding of what the triangles inside are decided by.
 class BoxTest {
  public:
-  BoxTest(const LineFan& fan, const LineTree& tree) : x_(fan.x_exact - tree.centre), g_(fan.g_exact) {
-    const double reach = tree.reach(fan.x_exact);
-    slack_ = 64 * kFloatRoundoff * reach;
+  BoxTest(const LineFan& fan, const LineTree& tree)
+      : x_(fan.x_exact - tree.centre), g_(fan.g_exact), slack_(fan.slack) {
     for (int k = 0; k < 3; ++k) {
       lo_[k] = x_[k] + std::min({0., fan.a[k], fan.b[k]}) - slack_;
       hi_[k] = x_[k] + std::max({0., fan.a[k], fan.b[k]}) + slack_;
@@ -116,9 +104,7 @@ class Walk {
 
 void visible_scalar(const LineBvh& bvh, std::span<const LineQuery> queries, std::vector<IntervalSet>& out,
                     QueryCounters& counters) {
-  out.resize(queries.size());
   for (size_t i = 0; i < queries.size(); ++i) Walk(bvh, queries[i], out[i], counters).run();
-  counters.line_queries += queries.size();
 }
 
 }  // namespace penumbra

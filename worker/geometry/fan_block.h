@@ -1,0 +1,173 @@
+#pragma once
+// What sixteen triangles hide of a chord: hidden_by_triangle (line_fan.cpp), lane by lane to the last bit,
+// and the union of such intervals.
+#include "worker/geometry/line_bvh.h"
+#include "worker/geometry/simd.h"
+#include "worker/geometry/visible_set.h"
+
+namespace penumbra {
+namespace {
+
+/// Hidden intervals that wait to be taken from the visible set.
+class HiddenIntervals {
+  using S = Simd;
+
+ public:
+  void add(S::Mask chosen, S::Floats lo, S::Floats hi) {
+    S::compress(lo_ + count_, chosen, lo);
+    S::compress(hi_ + count_, chosen, hi);
+    count_ += std::popcount(S::bits(chosen));
+  }
+  void add(Interval i) {
+    lo_[count_] = i.lo;
+    hi_[count_++] = i.hi;
+  }
+  bool empty() const { return count_ == 0; }
+  /// Room for the hits of another block, and for the whole vector that a compressed store writes.
+  bool full() const { return count_ > kCapacity - 3 * kWidth; }
+
+  /// Takes all of them from the set, whole connected stretches at a time. True if that changed it.
+  bool flush(VisibleSet& visible) {
+    bool changed = false;
+    for (int first = 0; first < count_; first += kWidth) {
+      const int count = std::min(count_ - first, kWidth);
+      if (count == 1) {
+        changed |= visible.subtract(lo_[first], hi_[first]);
+      } else {
+        changed |= flush_vector(visible, lo_ + first, hi_ + first, count);
+      }
+    }
+    count_ = 0;
+    return changed;
+  }
+
+ private:
+  static constexpr int kCapacity = 16 * kWidth;
+
+  static bool flush_vector(VisibleSet& visible, const float* lows, const float* highs, int count) {
+    const S::Mask used = S::mask((1u << count) - 1);
+    const S::Floats lo = S::select(used, S::load_unaligned(lows), S::all(2));
+    const S::Floats hi = S::select(used, S::load_unaligned(highs), S::all(-1));
+    const float least = S::lowest(lo), most = S::highest(hi);
+    if (!visible.overlaps(least, most)) return false;
+    // An end is one of the union's if no other interval holds it and goes on.
+    S::Mask inner_end = S::mask(0);
+    for (int j = 0; j < count; ++j) {
+      inner_end =
+          S::either(inner_end, S::both(S::less_equal(S::all(lows[j]), hi), S::less(hi, S::all(highs[j]))));
+    }
+    const S::Mask ends = S::without(used, inner_end);
+    if (S::bits(S::both(ends, S::less(hi, S::all(most)))) == 0) return visible.subtract(least, most);
+    S::Mask inner_start = S::mask(0);
+    for (int j = 0; j < count; ++j) {
+      inner_start =
+          S::either(inner_start, S::both(S::less(S::all(lows[j]), lo), S::less_equal(lo, S::all(highs[j]))));
+    }
+    bool changed = false;
+    for (uint32_t starts = S::bits(S::without(used, inner_start)); starts != 0; starts &= starts - 1) {
+      const float start = lows[std::countr_zero(starts)];
+      const S::Mask later = S::both(ends, S::less(S::all(start), hi));
+      changed |= visible.subtract(start, S::lowest(S::select(later, hi, S::all(2))));
+    }
+    return changed;
+  }
+
+  int count_ = 0;
+  alignas(64) float lo_[kCapacity], hi_[kCapacity];
+};
+
+/// The fan's functionals, ready for vectors.
+class FanBlock {
+  using S = Simd;
+
+ public:
+  explicit FanBlock(const LineFan& fan) : fan_(fan) {}
+
+  /// Adds what the block hides within [v0,v1]; the widest such stretch is returned for the occluder cache.
+  float hidden(const TriangleBlock& block, const Excluded& excluded, float v0, float v1,
+               HiddenIntervals& out) const {
+    Corner c[3];
+    for (int i = 0; i < 3; ++i) c[i] = corner(block.p[i]);
+    const S::Mask d1 = S::differ(c[0].below, c[1].below), d2 = S::differ(c[0].below, c[2].below);
+    S::Mask cut = S::either(d1, d2);
+    // The odd vertex out is 0 if it differs from both, else the one that differs from 0.
+    const S::Mask odd0 = S::both(d1, d2), odd1 = S::without(d1, d2), odd2 = S::without(d2, d1);
+    const auto pick = [&](auto member) {
+      return Picked{S::select(odd0, c[0].*member, S::select(odd1, c[1].*member, c[2].*member)),
+                    S::select(odd0, c[1].*member, c[0].*member), S::select(odd2, c[1].*member, c[2].*member)};
+    };
+    const Picked g = pick(&Corner::g), beta = pick(&Corner::beta), t = pick(&Corner::t);
+    const Crossing e1{cross(g.first, beta.odd, g.odd, beta.first), cross(g.first, t.odd, g.odd, t.first),
+                      S::add(g.first, g.odd)};
+    const Crossing e2{cross(g.second, beta.odd, g.odd, beta.second), cross(g.second, t.odd, g.odd, t.second),
+                      S::add(g.second, g.odd)};
+    const S::Floats near1 = S::mul(S::all(fan_.near), e1.w), near2 = S::mul(S::all(fan_.near), e2.w);
+    const S::Floats minus1 = S::mul(S::all(-fan_.near), e1.w), minus2 = S::mul(S::all(-fan_.near), e2.w);
+    const S::Mask behind = S::both(S::less(e1.t, minus1), S::less(e2.t, minus2));
+    const S::Mask beyond1 = S::less_equal(S::mul(S::all(fan_.light), e1.w), e1.t);
+    const S::Mask beyond2 = S::less_equal(S::mul(S::all(fan_.light), e2.w), e2.t);
+    cut = S::without(S::without(cut, behind), S::both(beyond1, beyond2));
+    if (excluded.count != 0) cut = S::without(cut, excluded_lanes(block, excluded));
+    const S::Mask ends =
+        S::either(S::either(S::less(e1.t, near1), S::less(e2.t, near2)), S::either(beyond1, beyond2));
+    if (const uint32_t careful = S::bits(S::both(cut, ends))) {
+      near_ends(block, careful, S::bits(odd1), S::bits(odd2), v0, v1, out);
+      cut = S::without(cut, ends);
+    }
+    const S::Floats v1s = S::div(e1.beta, e1.t), v2s = S::div(e2.beta, e2.t);
+    const S::Floats lo = S::max(S::min(v1s, v2s), S::all(v0)), hi = S::min(S::max(v1s, v2s), S::all(v1));
+    cut = S::both(cut, S::less(lo, hi));
+    if (S::bits(cut) == 0) return 0;
+    out.add(cut, lo, hi);
+    return S::highest(S::select(cut, S::sub(hi, lo), S::all(0)));
+  }
+
+ private:
+  struct Corner {
+    S::Floats g, beta, t;
+    S::Mask below;
+  };
+  struct Picked {
+    S::Floats odd, first, second;
+  };
+  struct Crossing {
+    S::Floats beta, t, w;
+  };
+
+  Corner corner(const float (&p)[3][kWidth]) const {
+    const S::Floats x = S::sub(S::load(p[0]), S::all(fan_.x.x)), y = S::sub(S::load(p[1]), S::all(fan_.x.y)),
+                    z = S::sub(S::load(p[2]), S::all(fan_.x.z));
+    const auto dot = [&](const Vec3f& n) {
+      return S::fma(S::all(n.z), z, S::fma(S::all(n.y), y, S::mul(S::all(n.x), x)));
+    };
+    const S::Floats g = dot(fan_.g);
+    return {S::abs(g), dot(fan_.beta), dot(fan_.t), S::less(g, S::all(0))};
+  }
+
+  /// a b + c d without a fused multiply-add: the same whichever vertex comes first.
+  static S::Floats cross(S::Floats a, S::Floats b, S::Floats c, S::Floats d) {
+    return S::add(S::mul(a, b), S::mul(c, d));
+  }
+
+  static S::Mask excluded_lanes(const TriangleBlock& block, const Excluded& excluded) {
+    return S::in_range(block.id, excluded.first, excluded.count);
+  }
+
+  [[gnu::noinline]] void near_ends(const TriangleBlock& block, uint32_t lanes, uint32_t odd1, uint32_t odd2,
+                                   float v0, float v1, HiddenIntervals& out) const {
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int lane = std::countr_zero(lanes);
+      Vec3f p[3];
+      for (int c = 0; c < 3; ++c) p[c] = {block.p[c][0][lane], block.p[c][1][lane], block.p[c][2][lane]};
+      const int odd = odd1 >> lane & 1 ? 1 : odd2 >> lane & 1 ? 2 : 0;
+      const Interval hidden = hidden_near_ends(fan_, p, odd);
+      const Interval clamped{std::max(hidden.lo, v0), std::min(hidden.hi, v1)};
+      if (clamped.lo < clamped.hi) out.add(clamped);
+    }
+  }
+
+  const LineFan& fan_;
+};
+
+}  // namespace
+}  // namespace penumbra

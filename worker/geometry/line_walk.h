@@ -1,0 +1,160 @@
+#pragma once
+// The walk of a line query through the hierarchy, sixteen boxes or triangles at a time. Included by one file
+// per instruction set.
+#include "worker/geometry/fan_block.h"
+#include "worker/geometry/fan_boxes.h"
+#include "worker/geometry/line_query.h"
+#include "worker/geometry/visible_set.h"
+
+namespace penumbra {
+namespace {
+
+class LineWalk {
+ public:
+  LineWalk(const LineBvh& bvh, LineWorkspace& workspace, QueryCounters& counters)
+      : bvh_(bvh), workspace_(workspace), counters_(counters), visible_(workspace) {}
+
+  void run(const LineQuery& query, IntervalSet& out) {
+    query_ = &query;
+    visible_.reset();
+    v0_ = 0;
+    v1_ = 1;
+    gap_lo_ = gap_hi_ = 0;
+    widest_ = 0;
+    const Vec3d x(query.x), a = Vec3d(query.a) - x, b = Vec3d(query.b) - x;
+    const LineTree& frame = bvh_.world.nodes.empty() ? bvh_.instance_tree : bvh_.world;
+    const LineFan fan = make_fan(x, a, b, frame.nodes.empty() ? 0 : frame.reach(x));
+    out.clear();
+    if (fan.degenerate) return;  // a chord seen end on has no width to be seen by
+    if (!bvh_.world.nodes.empty()) {
+      triangles(bvh_.world, fan, excluded_in(bvh_, query, kNone), workspace_.stack.data(),
+                workspace_.leaves.data());
+    }
+    if (!bvh_.instance_tree.nodes.empty() && v0_ < v1_) placed_objects(x, a, b);
+    if (widest_ > 0) {
+      workspace_.occluder_tree = bvh_.id;
+      workspace_.occluder = occluder_;
+    }
+    sorted(out);
+  }
+
+ private:
+  void placed_objects(const Vec3d& x, const Vec3d& a, const Vec3d& b) {
+    const LineFan fan = make_fan(x, a, b, bvh_.instance_tree.reach(x));
+    walk(bvh_.instance_tree, fan, workspace_.stack.data(), workspace_.leaves.data(),
+         [&](const uint32_t* found, int count, uint32_t* stack, uint32_t* leaves) {
+           for (int i = 0; i < count && v0_ < v1_; ++i) {
+             const LineInstance& placed = bvh_.instances[found[i]];
+             const LineTree& tree = bvh_.objects[placed.tree];
+             Vec3d ox, oa, ob;
+             placed.to_object.multVecMatrix(x, ox);
+             placed.to_object.multDirMatrix(a, oa);
+             placed.to_object.multDirMatrix(b, ob);
+             const LineFan object_fan = make_fan(ox, oa, ob, tree.reach(ox));
+             if (object_fan.degenerate) continue;
+             triangles(tree, object_fan, excluded_in(bvh_, *query_, found[i]), stack, leaves);
+           }
+         });
+  }
+
+  void triangles(const LineTree& tree, const LineFan& fan, const Excluded& excluded, uint32_t* stack_base,
+                 uint32_t* leaves_base) {
+    const FanBlock fan_block(fan);
+    const bool world = &tree == &bvh_.world;
+    if (world && workspace_.occluder_tree == bvh_.id) {
+      test(fan_block, tree, workspace_.occluder, excluded, true);
+      if (!take_hidden()) return;
+    }
+    walk(tree, fan, stack_base, leaves_base, [&](const uint32_t* found, int count, uint32_t*, uint32_t*) {
+      for (int i = 0; i < count; ++i) {
+        test(fan_block, tree, found[i], excluded, world);
+        if (hidden_.full()) take_hidden();
+      }
+      take_hidden();
+    });
+  }
+
+  void test(const FanBlock& fan_block, const LineTree& tree, uint32_t block, const Excluded& excluded,
+            bool world) {
+    counters_.triangles_tested += kWidth;
+    const float width = fan_block.hidden(tree.blocks[block], excluded, v0_, v1_, hidden_);
+    if (world && width > widest_) {
+      widest_ = width;
+      occluder_ = block;
+    }
+  }
+
+  /// Takes what was found from the visible set; false if nothing is left of it.
+  bool take_hidden() {
+    if (!hidden_.empty() && hidden_.flush(visible_)) {
+      std::tie(v0_, v1_) = visible_.hull();
+      if (v0_ < v1_) std::tie(gap_lo_, gap_hi_) = visible_.widest_gap();
+      ++version_;
+    }
+    return v0_ < v1_;
+  }
+
+  /// Visits the leaves that the visible part of the fan meets. `use` may narrow it, and gets the free parts
+  /// of the two buffers for a walk of its own.
+  template <class Use>
+  void walk(const LineTree& tree, const LineFan& fan, uint32_t* stack_base, uint32_t* leaves, Use use) {
+    FanBoxes boxes(fan, tree);
+    uint64_t version = version_;
+    boxes.narrow(v0_, v1_);
+    boxes.skip(gap_lo_, gap_hi_);
+    uint32_t* stack = stack_base;
+    *stack++ = 0;
+    while (stack != stack_base) {
+      const LineNode& node = tree.nodes[*--stack];
+      ++counters_.nodes_visited;
+      const uint32_t met = boxes.meeting(node);
+      const uint32_t inner = met & ~node.leaves, found = met & node.leaves;
+      Simd::compress(stack, inner, node.child);
+      stack += std::popcount(inner);
+      if (found == 0) continue;
+      Simd::compress(leaves, found, node.child);
+      use(leaves, std::popcount(found), stack, leaves + kWidth);
+      if (version == version_) continue;
+      if (!(v0_ < v1_)) return;
+      version = version_;
+      boxes.narrow(v0_, v1_);
+      boxes.skip(gap_lo_, gap_hi_);
+    }
+  }
+
+  void sorted(IntervalSet& out) const {
+    if (!(v0_ < v1_)) return;
+    // A handful: the lowest not yet written, again and again.
+    float after = -1;
+    for (;;) {
+      Interval next{2, 2};
+      for (int i = 0; i < visible_.lanes(); ++i) {
+        const Interval lane = visible_.lane(i);
+        if (lane.lo < lane.hi && lane.lo > after && lane.lo < next.lo) next = lane;
+      }
+      if (next.lo == 2) return;
+      out.append(next.lo, next.hi);
+      after = next.lo;
+    }
+  }
+
+  const LineBvh& bvh_;
+  LineWorkspace& workspace_;
+  QueryCounters& counters_;
+  const LineQuery* query_ = nullptr;
+  VisibleSet visible_;
+  HiddenIntervals hidden_;
+  float v0_ = 0, v1_ = 1, gap_lo_ = 0, gap_hi_ = 0;
+  uint64_t version_ = 0;  ///< of the visible set
+  float widest_ = 0;      ///< what the best occluder of this query hides
+  uint32_t occluder_ = 0;
+};
+
+void visible_vector(const LineBvh& bvh, std::span<const LineQuery> queries, std::vector<IntervalSet>& out,
+                    QueryCounters& counters) {
+  LineWalk walk(bvh, line_workspace(bvh.depth()), counters);
+  for (size_t i = 0; i < queries.size(); ++i) walk.run(queries[i], out[i]);
+}
+
+}  // namespace
+}  // namespace penumbra
