@@ -58,13 +58,27 @@ absl::Status SceneBuilder::set_transform_times(double start, double end, FileLoc
   return absl::OkStatus();
 }
 
-absl::StatusOr<Placement> SceneBuilder::placement(std::string_view what, FileLoc loc) const {
-  const auto start = as_affine(transforms_.ctm.start), end = as_affine(transforms_.ctm.end);
+namespace {
+
+absl::StatusOr<Placement> checked_placement(const std::optional<Matrix>& start, const std::optional<Matrix>& end,
+                                            std::string_view what, FileLoc loc, const Diagnostics& diagnostics) {
   if (!start || !end)
-    return diagnostics_.error(loc, "this {}'s transform is not affine (its last column is not 0 0 0 1)", what);
+    return diagnostics.error(loc, "this {}'s transform is not affine (its last column is not 0 0 0 1)", what);
   if (is_singular(*start) || is_singular(*end))
-    return diagnostics_.error(loc, "this {}'s transform is singular", what);
+    return diagnostics.error(loc, "this {}'s transform is singular", what);
   return Placement{*start, *end};
+}
+
+}  // namespace
+
+absl::StatusOr<Placement> SceneBuilder::placement(std::string_view what, FileLoc loc) const {
+  const Placement& ctm = transforms_.ctm;
+  return checked_placement(as_affine(ctm.start), as_affine(ctm.end), what, loc, diagnostics_);
+}
+
+absl::StatusOr<Placement> SceneBuilder::placement_at_infinity(std::string_view what, FileLoc loc) const {
+  const Placement& ctm = transforms_.ctm;
+  return checked_placement(linear_part(ctm.start), linear_part(ctm.end), what, loc, diagnostics_);
 }
 
 // ---- the render's options ----

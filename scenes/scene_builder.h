@@ -96,6 +96,8 @@ class SceneBuilder {
   absl::Status check_name(PluginKind kind, const Entity& entity);
   /// The current transform, affine and invertible, for something that is placed in the world.
   absl::StatusOr<Placement> placement(std::string_view what, FileLoc loc) const;
+  /// The same for something at infinity: of its transform only the linear part acts.
+  absl::StatusOr<Placement> placement_at_infinity(std::string_view what, FileLoc loc) const;
   void push_state();
   void pop_state();
   void prepend_defaults(const std::string& target, Params& params) const;

@@ -111,7 +111,9 @@ absl::Status SceneBuilder::add_light(Entity entity) {
   RETURN_IF_ERROR(check_name(PluginKind::kLight, entity));
   prepend_defaults("light", entity.params);
   LightEntity light;
-  ASSIGN_OR_RETURN(light.placement, placement("light source", entity.loc));
+  const bool at_infinity = entity.type == "infinite" || entity.type == "exinfinite" || entity.type == "distant";
+  ASSIGN_OR_RETURN(light.placement, at_infinity ? placement_at_infinity("light source", entity.loc)
+                                                : placement("light source", entity.loc));
   resolve_textures(entity.type, entity.params);
   static_cast<Entity&>(light) = std::move(entity);
   description_.lights.push_back(std::move(light));

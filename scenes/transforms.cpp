@@ -86,4 +86,11 @@ std::optional<Matrix> as_affine(const Matrix& m) {
   return affine;
 }
 
+Matrix linear_part(const Matrix& m) {
+  Matrix linear;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) linear[row][column] = m[row][column];
+  return linear;
+}
+
 }  // namespace penumbra

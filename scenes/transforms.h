@@ -29,4 +29,7 @@ bool is_singular(const Matrix& m);
 /// The same map of points with (0,0,0,1) as its last column; empty if it is not affine.
 std::optional<Matrix> as_affine(const Matrix& m);
 
+/// Without translation and projection: how directions are mapped.
+Matrix linear_part(const Matrix& m);
+
 }  // namespace penumbra
