@@ -20,10 +20,11 @@ class ParallelChords::Chain {
     }
   }
 
-  /// Where the chord at offset s ends on the chain.
+  /// Where the chord at offset s ends on the chain. Of an edge that is parallel to the chords, the corner
+  /// that this chain passes last on the way up, or first at the top.
   Corner end_at(double s) const {
     size_t i = 1;
-    while (i + 1 < size_ && items_[i].s < s) ++i;
+    while (i + 1 < size_ && items_[i].s <= s) ++i;
     const Corner &from = items_[i - 1], &to = items_[i];
     const double width = to.s - from.s;
     const double f = width > 0 ? std::min(std::max((s - from.s) / width, 0.0), 1.0) : 0;

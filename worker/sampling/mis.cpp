@@ -46,8 +46,11 @@ void balance_weights(std::span<const int> counts, std::span<const double> pdfs,
   const double plain_largest = largest_of(counts, pdfs);
   const bool smooth = largest > 0 && !(std::isinf(plain_largest) && !std::isinf(largest));
   if (!smooth) largest = plain_largest;
-  for (size_t i = 0; i < pdfs.size(); ++i)
-    out[i] = counts[i] * relative_density(pdfs[i], largest) * (smooth ? factor(i) : 1.0);
+  for (size_t i = 0; i < pdfs.size(); ++i) {
+    // A density without a say is not even divided: it may be as large as it likes.
+    const double share = counts[i] * (smooth ? factor(i) : 1.0);
+    out[i] = share > 0 ? share * relative_density(pdfs[i], largest) : 0;
+  }
   normalise(out);
 }
 
@@ -55,7 +58,7 @@ void power_weights(std::span<const int> counts, std::span<const double> pdfs, st
   PENUMBRA_CHECK(out.size() == pdfs.size());
   const double largest = largest_of(counts, pdfs);
   for (size_t i = 0; i < pdfs.size(); ++i) {
-    const double q = counts[i] * relative_density(pdfs[i], largest);
+    const double q = counts[i] > 0 ? counts[i] * relative_density(pdfs[i], largest) : 0;
     out[i] = q * q;
   }
   normalise(out);
@@ -66,7 +69,8 @@ double inverse_sum(std::span<const int> counts, std::span<const double> pdfs) {
   if (largest == 0) return std::numeric_limits<double>::infinity();
   if (std::isinf(largest)) return 0;
   double sum = 0;
-  for (size_t i = 0; i < pdfs.size(); ++i) sum += counts[i] * (pdfs[i] / largest);
+  for (size_t i = 0; i < pdfs.size(); ++i)
+    if (counts[i] > 0) sum += counts[i] * (pdfs[i] / largest);
   return 1 / sum / largest;
 }
 

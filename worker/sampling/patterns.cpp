@@ -54,21 +54,21 @@ double to_unit(uint32_t leading, uint64_t trailing) {
 }  // namespace
 
 uint64_t permute(uint64_t i, uint64_t size, uint64_t seed) {
+  if (size == 1) return 0;
   const uint64_t mask = std::bit_ceil(size) - 1;
   const int half = (std::bit_width(mask) + 1) / 2;
-  const uint64_t add = seed, flip = seed >> 17, turn = (seed >> 7) | 1, spin = (seed >> 29) | 1;
-  // A bijection of [0, 2^k), repeated until it is back inside [0,size): still a bijection there.
+  const uint64_t adds = mix64(seed), factors = mix64(seed ^ 0x2545f4914f6cdd1du);
+  // A bijection of [0, 2^k), repeated until it is back inside [0,size): still a bijection there. Each round
+  // takes other bits of the keys, for where k is small only the lowest few of a key do anything.
   do {
-    i = ((i + add) * turn) & mask;
-    i ^= i >> half;
-    i = ((i ^ flip) * spin) & mask;
-    i ^= i >> half;
-    i = (i * 0x2c1b3c6du + add) & mask;
-    i ^= i >> half;
+    for (int round = 0; round < 64; round += 16) {
+      i = ((i + (adds >> round)) * ((factors >> round) | 1)) & mask;
+      i ^= i >> half;
+    }
   } while (i >= size);
   // The rotation makes the image of every i uniform over the seeds, even for sizes so small that the
   // bijections above are far from all permutations.
-  i += scale_down(static_cast<uint32_t>(mix64(seed)), size);
+  i += scale_down(static_cast<uint32_t>(seed >> 32), size);
   return i < size ? i : i - size;
 }
 

@@ -8,7 +8,7 @@
 namespace penumbra {
 
 /// Image of i under a pseudo-random permutation of [0,size), 0 <= i < size <= 2^32. Over the seeds the
-/// image of each i is uniform.
+/// image of each i is uniform. `seed` (here and below): well mixed bits, as of child_key().
 uint64_t permute(uint64_t i, uint64_t size, uint64_t seed);
 
 /// Point `stratum` of `size` correlated multi-jittered points (Kensler 2013, §«arbitrary sizes»): one point
