@@ -68,8 +68,7 @@ MeshOr make_bilinear_mesh(const ShapeEntity& shape, const MeshContext& context) 
   if (in.positions.empty()) return context.error(shape.loc, "bilinearmesh without \"point3 P\"");
   ASSIGN_OR_RETURN(in.indices, indices_of(shape, 4, context));
   if (in.indices.empty()) {
-    if (in.positions.size() != 4)
-      return context.error(shape.loc, "bilinearmesh without \"integer indices\"");
+    if (in.positions.size() != 4) return context.error(shape.loc, "bilinearmesh without \"integer indices\"");
     in.indices = {0, 1, 2, 3};
   }
   for (const uint32_t index : in.indices)

@@ -37,6 +37,8 @@ std::string Params::string(std::string_view name, std::string_view fallback) con
   return param->strings[0];
 }
 
-std::string SceneDescription::place(FileLoc loc) const { return place_in(files, loc); }
+std::string SceneDescription::place(FileLoc loc) const {
+  return place_in(files, loc);
+}
 
 }  // namespace penumbra

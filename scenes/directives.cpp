@@ -7,10 +7,18 @@ namespace {
 
 using Place = Directive::Place;
 
-absl::Status translate(SceneBuilder& b, Statement& s) { return b.concatenate(translation(s.vector(0)), s.loc); }
-absl::Status scale(SceneBuilder& b, Statement& s) { return b.concatenate(scaling(s.vector(0)), s.loc); }
-absl::Status identity(SceneBuilder& b, Statement& s) { return b.set_transform(Matrix(), s.loc); }
-absl::Status transform(SceneBuilder& b, Statement& s) { return b.set_transform(matrix_of(s.numbers), s.loc); }
+absl::Status translate(SceneBuilder& b, Statement& s) {
+  return b.concatenate(translation(s.vector(0)), s.loc);
+}
+absl::Status scale(SceneBuilder& b, Statement& s) {
+  return b.concatenate(scaling(s.vector(0)), s.loc);
+}
+absl::Status identity(SceneBuilder& b, Statement& s) {
+  return b.set_transform(Matrix(), s.loc);
+}
+absl::Status transform(SceneBuilder& b, Statement& s) {
+  return b.set_transform(matrix_of(s.numbers), s.loc);
+}
 absl::Status concat_transform(SceneBuilder& b, Statement& s) {
   return b.concatenate(matrix_of(s.numbers), s.loc);
 }
@@ -49,18 +57,27 @@ absl::Status option(SceneBuilder& b, Statement& s) {
   return b.set_option(kind, s.entity());
 }
 
-absl::Status camera(SceneBuilder& b, Statement& s) { return b.set_camera(s.entity()); }
+absl::Status camera(SceneBuilder& b, Statement& s) {
+  return b.set_camera(s.entity());
+}
 
 /// v4's switches of its own renderer (Option, ColorSpace): nothing of ours depends on them.
-absl::Status no_effect(SceneBuilder&, Statement&) { return absl::OkStatus(); }
-
-absl::Status color_space(SceneBuilder& b, Statement& s) {
-  if (s.strings[0] != "srgb") b.warn(s.loc, fmt::format("ColorSpace \"{}\" is read as srgb", printable(s.strings[0])));
+absl::Status no_effect(SceneBuilder&, Statement&) {
   return absl::OkStatus();
 }
 
-absl::Status attribute_begin(SceneBuilder& b, Statement& s) { return b.begin_attributes(s.loc); }
-absl::Status transform_begin(SceneBuilder& b, Statement& s) { return b.begin_transform(s.loc); }
+absl::Status color_space(SceneBuilder& b, Statement& s) {
+  if (s.strings[0] != "srgb")
+    b.warn(s.loc, fmt::format("ColorSpace \"{}\" is read as srgb", printable(s.strings[0])));
+  return absl::OkStatus();
+}
+
+absl::Status attribute_begin(SceneBuilder& b, Statement& s) {
+  return b.begin_attributes(s.loc);
+}
+absl::Status transform_begin(SceneBuilder& b, Statement& s) {
+  return b.begin_transform(s.loc);
+}
 absl::Status attribute_end(SceneBuilder& b, Statement& s) {
   b.end_attributes(s.loc);
   return absl::OkStatus();
@@ -116,12 +133,24 @@ absl::Status world_end(SceneBuilder& b, Statement& s) {
   return absl::OkStatus();
 }
 
-absl::Status light_source(SceneBuilder& b, Statement& s) { return b.add_light(s.entity()); }
-absl::Status area_light_source(SceneBuilder& b, Statement& s) { return b.set_area_light(s.entity()); }
-absl::Status shape(SceneBuilder& b, Statement& s) { return b.add_shape(s.entity()); }
-absl::Status object_begin(SceneBuilder& b, Statement& s) { return b.begin_object(s.strings[0], s.loc); }
-absl::Status object_end(SceneBuilder& b, Statement& s) { return b.end_object(s.loc); }
-absl::Status object_instance(SceneBuilder& b, Statement& s) { return b.add_instance(s.strings[0], s.loc); }
+absl::Status light_source(SceneBuilder& b, Statement& s) {
+  return b.add_light(s.entity());
+}
+absl::Status area_light_source(SceneBuilder& b, Statement& s) {
+  return b.set_area_light(s.entity());
+}
+absl::Status shape(SceneBuilder& b, Statement& s) {
+  return b.add_shape(s.entity());
+}
+absl::Status object_begin(SceneBuilder& b, Statement& s) {
+  return b.begin_object(s.strings[0], s.loc);
+}
+absl::Status object_end(SceneBuilder& b, Statement& s) {
+  return b.end_object(s.loc);
+}
+absl::Status object_instance(SceneBuilder& b, Statement& s) {
+  return b.add_instance(s.strings[0], s.loc);
+}
 
 // Places are pbrt-v3's: what stands elsewhere is left out there too (v4 refuses it).
 constexpr Directive kDirectives[] = {

@@ -25,8 +25,7 @@ absl::StatusOr<std::vector<uint32_t>> opposite_half_edges(std::span<const uint32
     size_t end = i + 1;
     while (end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high) ++end;
     const Edge& first = edges[i];
-    if (end - i > 2)
-      return invalid_input("{} faces meet at the edge {}–{}", end - i, first.low, first.high);
+    if (end - i > 2) return invalid_input("{} faces meet at the edge {}–{}", end - i, first.low, first.high);
     if (end - i == 2) {
       const Edge& second = edges[i + 1];
       if (indices[first.half_edge] == indices[second.half_edge])

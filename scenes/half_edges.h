@@ -11,8 +11,12 @@ namespace penumbra {
 
 constexpr uint32_t kNoHalfEdge = ~uint32_t{0};
 
-constexpr uint32_t next_half_edge(uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
-constexpr uint32_t previous_half_edge(uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
+constexpr uint32_t next_half_edge(uint32_t h) {
+  return h % 3 == 2 ? h - 2 : h + 1;
+}
+constexpr uint32_t previous_half_edge(uint32_t h) {
+  return h % 3 == 0 ? h + 2 : h - 1;
+}
 
 /// Per half-edge the one of the other face that runs the other way; kNoHalfEdge at a boundary.
 /// InvalidArgument if an edge has more than two faces or two that wind against each other.

@@ -26,7 +26,9 @@ constexpr std::array<CharClass, 256> make_classes() {
 
 constexpr std::array<CharClass, 256> kClasses = make_classes();
 
-CharClass class_of(char c) { return kClasses[static_cast<unsigned char>(c)]; }
+CharClass class_of(char c) {
+  return kClasses[static_cast<unsigned char>(c)];
+}
 
 }  // namespace
 
@@ -36,9 +38,13 @@ Lexer::Lexer(std::string_view text, uint32_t file)
   if (text.starts_with(kByteOrderMark)) at_ += kByteOrderMark.size();
 }
 
-FileLoc Lexer::here() const { return {file_, line_, static_cast<uint32_t>(at_ - line_start_ + 1)}; }
+FileLoc Lexer::here() const {
+  return {file_, line_, static_cast<uint32_t>(at_ - line_start_ + 1)};
+}
 
-Token Lexer::error(std::string_view what) const { return {Token::Kind::kError, what, here()}; }
+Token Lexer::error(std::string_view what) const {
+  return {Token::Kind::kError, what, here()};
+}
 
 void Lexer::skip_blanks() {
   for (; at_ != end_; ++at_) {

@@ -13,10 +13,14 @@ namespace {
 constexpr uint64_t kMostTriangles = uint64_t{1} << 26;
 
 /// Weight of each neighbour of an interior vertex (Warren); 1/16 at the regular valence 6.
-double beta(size_t valence) { return valence == 3 ? 3.0 / 16 : 3.0 / (8.0 * static_cast<double>(valence)); }
+double beta(size_t valence) {
+  return valence == 3 ? 3.0 / 16 : 3.0 / (8.0 * static_cast<double>(valence));
+}
 
 /// The same for the position on the limit surface.
-double limit_weight(size_t valence) { return 1 / (static_cast<double>(valence) + 3 / (8 * beta(valence))); }
+double limit_weight(size_t valence) {
+  return 1 / (static_cast<double>(valence) + 3 / (8 * beta(valence)));
+}
 
 /// Neighbours of one vertex in turn. Interior: clockwise where faces wind counter-clockwise; boundary:
 /// counter-clockwise from one boundary edge to the other. (pbrt's orders: they decide which way S × T
@@ -28,7 +32,7 @@ struct Ring {
 
 struct LoopMesh {
   std::vector<Vec3d> positions;
-  std::vector<uint32_t> indices;    ///< vertex at the start of each half-edge
+  std::vector<uint32_t> indices;  ///< vertex at the start of each half-edge
   std::vector<uint32_t> opposite;
   std::vector<uint32_t> corner_of;  ///< one half-edge that starts at each vertex; kNoHalfEdge: unused
 
@@ -153,9 +157,12 @@ Vec3d limit_normal(const std::vector<Vec3d>& p, uint32_t vertex, const Ring& rin
     return s.cross(t);
   }
   s = p[r[n - 1]] - p[r[0]];
-  if (n == 2) t = p[r[0]] + p[r[1]] - p[vertex] * 2;
-  else if (n == 3) t = p[r[1]] - p[vertex];
-  else if (n == 4) t = p[r[1]] * 2 + p[r[2]] * 2 - p[r[0]] - p[r[3]] - p[vertex] * 2;
+  if (n == 2)
+    t = p[r[0]] + p[r[1]] - p[vertex] * 2;
+  else if (n == 3)
+    t = p[r[1]] - p[vertex];
+  else if (n == 4)
+    t = p[r[1]] * 2 + p[r[2]] * 2 - p[r[0]] - p[r[3]] - p[vertex] * 2;
   else {
     const double angle = std::numbers::pi / static_cast<double>(n - 1);
     t = (p[r[0]] + p[r[n - 1]]) * -std::sin(angle);
@@ -174,7 +181,8 @@ TriangleMesh limit_mesh(const LoopMesh& loop) {
   for (uint32_t v = 0; v < count; ++v) {
     if (loop.corner_of[v] == kNoHalfEdge) continue;
     loop.ring(v, ring);
-    limit[v] = weighted(loop.positions, v, ring, ring.boundary ? 1.0 / 5 : limit_weight(ring.vertices.size()));
+    limit[v] =
+        weighted(loop.positions, v, ring, ring.boundary ? 1.0 / 5 : limit_weight(ring.vertices.size()));
   }
   mesh.positions.reserve(count);
   mesh.normals.reserve(count);

@@ -15,10 +15,14 @@ struct Maker {
 };
 
 constexpr Maker kMakers[] = {
-    {"trianglemesh", make_triangle_mesh}, {"plymesh", make_ply_mesh},
-    {"quad", make_quad},                  {"bilinearmesh", make_bilinear_mesh},
-    {"loopsubdiv", make_loop_subdivision}, {"sphere", make_sphere},
-    {"disk", make_disk},                  {"cylinder", make_cylinder},
+    {"trianglemesh", make_triangle_mesh},
+    {"plymesh", make_ply_mesh},
+    {"quad", make_quad},
+    {"bilinearmesh", make_bilinear_mesh},
+    {"loopsubdiv", make_loop_subdivision},
+    {"sphere", make_sphere},
+    {"disk", make_disk},
+    {"cylinder", make_cylinder},
 };
 
 const Maker* find_maker(std::string_view type) {
@@ -27,8 +31,12 @@ const Maker* find_maker(std::string_view type) {
   return nullptr;
 }
 
-bool is_finite(const Vec3f& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-bool is_finite(const Vec2f& v) { return std::isfinite(v.x) && std::isfinite(v.y); }
+bool is_finite(const Vec3f& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+bool is_finite(const Vec2f& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y);
+}
 
 template <class T>
 absl::Status check_finite(const std::vector<T>& values, std::string_view what, const ShapeEntity& shape,
@@ -79,7 +87,9 @@ void drop_degenerate(TriangleMesh& mesh, const ShapeEntity& shape, const MeshCon
 
 }  // namespace
 
-bool has_mesh(const ShapeEntity& shape) { return find_maker(shape.type) != nullptr; }
+bool has_mesh(const ShapeEntity& shape) {
+  return find_maker(shape.type) != nullptr;
+}
 
 absl::StatusOr<TriangleMesh> make_mesh(const ShapeEntity& shape, const SceneDescription& description,
                                        const SceneFiles& files, std::vector<std::string>& warnings) {

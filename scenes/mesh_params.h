@@ -20,8 +20,8 @@ absl::StatusOr<std::vector<uint32_t>> indices_of(const ShapeEntity& shape, size_
 /// An array per vertex that is shorter than the positions is ignored, one that is longer is cut, with a
 /// warning (as pbrt does).
 template <class T>
-void fit_to_vertices(std::vector<T>& values, size_t vertices, std::string_view name,
-                     const ShapeEntity& shape, const MeshContext& context) {
+void fit_to_vertices(std::vector<T>& values, size_t vertices, std::string_view name, const ShapeEntity& shape,
+                     const MeshContext& context) {
   if (values.empty() || values.size() == vertices) return;
   const bool enough = values.size() > vertices;
   context.warn(shape.loc, "{} values of {} for {} vertices: {}", values.size(), name, vertices,

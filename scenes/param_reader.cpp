@@ -16,15 +16,24 @@ struct Type {
 };
 
 constexpr Type kTypes[] = {
-    {"float", "float", Values::kNumbers, 1},       {"integer", "integer", Values::kIntegers, 1},
-    {"bool", "bool", Values::kBools, 1},           {"string", "string", Values::kStrings, 1},
-    {"texture", "texture", Values::kStrings, 1},   {"point", "point3", Values::kNumbers, 3},
-    {"point2", "point2", Values::kNumbers, 2},     {"point3", "point3", Values::kNumbers, 3},
-    {"vector", "vector3", Values::kNumbers, 3},    {"vector2", "vector2", Values::kNumbers, 2},
-    {"vector3", "vector3", Values::kNumbers, 3},   {"normal", "normal", Values::kNumbers, 3},
-    {"normal3", "normal", Values::kNumbers, 3},    {"rgb", "rgb", Values::kNumbers, 3},
-    {"color", "rgb", Values::kNumbers, 3},         {"xyz", "xyz", Values::kNumbers, 3},
-    {"blackbody", "blackbody", Values::kNumbers, 1}, {"spectrum", "spectrum", Values::kSpectrum, 1},
+    {"float", "float", Values::kNumbers, 1},
+    {"integer", "integer", Values::kIntegers, 1},
+    {"bool", "bool", Values::kBools, 1},
+    {"string", "string", Values::kStrings, 1},
+    {"texture", "texture", Values::kStrings, 1},
+    {"point", "point3", Values::kNumbers, 3},
+    {"point2", "point2", Values::kNumbers, 2},
+    {"point3", "point3", Values::kNumbers, 3},
+    {"vector", "vector3", Values::kNumbers, 3},
+    {"vector2", "vector2", Values::kNumbers, 2},
+    {"vector3", "vector3", Values::kNumbers, 3},
+    {"normal", "normal", Values::kNumbers, 3},
+    {"normal3", "normal", Values::kNumbers, 3},
+    {"rgb", "rgb", Values::kNumbers, 3},
+    {"color", "rgb", Values::kNumbers, 3},
+    {"xyz", "xyz", Values::kNumbers, 3},
+    {"blackbody", "blackbody", Values::kNumbers, 1},
+    {"spectrum", "spectrum", Values::kSpectrum, 1},
 };
 
 const Type* find_type(std::string_view word) {
@@ -151,8 +160,7 @@ absl::Status check_arity(const Type& type, Param& param, Diagnostics& diagnostic
 
 absl::StatusOr<double> number_of(const Token& token, const Diagnostics& diagnostics) {
   const auto value = parse_number(token.text);
-  if (!value)
-    return diagnostics.error(token.loc, "expected a number, found '{}'", printable(token.text));
+  if (!value) return diagnostics.error(token.loc, "expected a number, found '{}'", printable(token.text));
   if (std::isnan(*value)) return diagnostics.error(token.loc, "'{}' is not a number", token.text);
   // Geometry and colours are floats in the end: what overflows there is refused here, with its place.
   if (!(std::abs(*value) <= std::numeric_limits<float>::max()))

@@ -66,8 +66,7 @@ absl::Status Parser::directive(const Token& token) {
                               token.kind == Kind::kString ? "\"" : "");
   if (token.text == "Import") return import(token);
   const Directive* const directive = find_directive(token.text);
-  if (!directive)
-    return diagnostics_.error(token.loc, "unknown directive '{}'", printable(token.text));
+  if (!directive) return diagnostics_.error(token.loc, "unknown directive '{}'", printable(token.text));
   ASSIGN_OR_RETURN(Statement statement, read(*directive, token));
   if (!is_in_place(*directive, token.loc)) return absl::OkStatus();
   return directive->apply(builder_, statement);
@@ -122,9 +121,12 @@ absl::Status Parser::read_numbers(const Directive& directive, Statement& stateme
 
 bool Parser::is_in_place(const Directive& directive, FileLoc loc) {
   const char* why = nullptr;
-  if (builder_.after_world()) why = "after WorldEnd";
-  else if (directive.place == Directive::Place::kInWorld && !builder_.in_world()) why = "before WorldBegin";
-  else if (directive.place == Directive::Place::kBeforeWorld && builder_.in_world()) why = "after WorldBegin";
+  if (builder_.after_world())
+    why = "after WorldEnd";
+  else if (directive.place == Directive::Place::kInWorld && !builder_.in_world())
+    why = "before WorldBegin";
+  else if (directive.place == Directive::Place::kBeforeWorld && builder_.in_world())
+    why = "after WorldBegin";
   if (why && misplaced_.insert(directive.name).second)
     diagnostics_.warn(loc, "{} {} is left out (as in pbrt); the first of its kind", directive.name, why);
   return !why;
@@ -133,8 +135,7 @@ bool Parser::is_in_place(const Directive& directive, FileLoc loc) {
 absl::Status Parser::import(const Token& token) {
   const Token name = tokens_.next();
   if (name.kind == Kind::kError) return tokens_.status();
-  if (name.kind != Kind::kString)
-    return diagnostics_.error(token.loc, "Import needs a quoted file name");
+  if (name.kind != Kind::kString) return diagnostics_.error(token.loc, "Import needs a quoted file name");
   RETURN_IF_ERROR(tokens_.enter(unescape(name.text), token.loc));
   builder_.begin_import();
   import_depths_.push_back(tokens_.depth());

@@ -5,13 +5,23 @@
 namespace penumbra {
 
 enum class PluginKind {
-  kShape, kLight, kAreaLight, kMaterial, kTexture, kCamera, kFilm, kSampler, kFilter, kIntegrator,
-  kAccelerator, kMedium,
+  kShape,
+  kLight,
+  kAreaLight,
+  kMaterial,
+  kTexture,
+  kCamera,
+  kFilm,
+  kSampler,
+  kFilter,
+  kIntegrator,
+  kAccelerator,
+  kMedium,
 };
 
 enum class Support {
-  kUnknown,     ///< no name of pbrt's
-  kSubstituted, ///< pbrt's; left out, or replaced by the nearest that is rendered, with a named warning
+  kUnknown,      ///< no name of pbrt's
+  kSubstituted,  ///< pbrt's; left out, or replaced by the nearest that is rendered, with a named warning
   kRendered,
 };
 

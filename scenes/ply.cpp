@@ -23,14 +23,22 @@ class BinaryCursor {
 
   bool read(PlyType type, double& value) {
     switch (type) {
-      case PlyType::kInt8: return get<int8_t>(value);
-      case PlyType::kUint8: return get<uint8_t>(value);
-      case PlyType::kInt16: return get<int16_t>(value);
-      case PlyType::kUint16: return get<uint16_t>(value);
-      case PlyType::kInt32: return get<int32_t>(value);
-      case PlyType::kUint32: return get<uint32_t>(value);
-      case PlyType::kFloat32: return get<float>(value);
-      case PlyType::kFloat64: return get<double>(value);
+      case PlyType::kInt8:
+        return get<int8_t>(value);
+      case PlyType::kUint8:
+        return get<uint8_t>(value);
+      case PlyType::kInt16:
+        return get<int16_t>(value);
+      case PlyType::kUint16:
+        return get<uint16_t>(value);
+      case PlyType::kInt32:
+        return get<int32_t>(value);
+      case PlyType::kUint32:
+        return get<uint32_t>(value);
+      case PlyType::kFloat32:
+        return get<float>(value);
+      case PlyType::kFloat64:
+        return get<double>(value);
     }
     return false;
   }
@@ -89,15 +97,16 @@ class AsciiCursor {
 };
 
 absl::Status broken(const PlyElement& element, uint64_t row) {
-  return invalid_input("the PLY file ends, or is no longer numbers, in {} {} of {}", printable(element.name), row,
-                       element.count);
+  return invalid_input("the PLY file ends, or is no longer numbers, in {} {} of {}", printable(element.name),
+                       row, element.count);
 }
 
 template <class Cursor>
 bool skip_property(Cursor& cursor, const PlyProperty& property) {
   if (!property.is_list) return cursor.skip(property.type, 1);
   double count = 0;
-  return cursor.read(property.count_type, count) && count >= 0 && cursor.skip(property.type, static_cast<uint64_t>(count));
+  return cursor.read(property.count_type, count) && count >= 0 &&
+         cursor.skip(property.type, static_cast<uint64_t>(count));
 }
 
 template <class Cursor>
@@ -118,9 +127,9 @@ Slot slot_of(const PlyProperty& property) {
     Slot slot;
   };
   static constexpr SlotName kNames[] = {
-      {"x", kX},   {"y", kY},   {"z", kZ}, {"nx", kNx}, {"ny", kNy}, {"nz", kNz},
-      {"u", kU},   {"v", kV},   {"s", kU}, {"t", kV},   {"texture_u", kU}, {"texture_v", kV},
-      {"texture_s", kU}, {"texture_t", kV}};
+      {"x", kX},         {"y", kY},         {"z", kZ},         {"nx", kNx},      {"ny", kNy},
+      {"nz", kNz},       {"u", kU},         {"v", kV},         {"s", kU},        {"t", kV},
+      {"texture_u", kU}, {"texture_v", kV}, {"texture_s", kU}, {"texture_t", kV}};
   if (!property.is_list)
     for (const SlotName& known : kNames)
       if (known.name == property.name) return known.slot;
@@ -189,8 +198,10 @@ absl::Status read_faces(Cursor& cursor, const PlyElement& element, uint64_t vert
   out.mesh.indices.reserve(3 * element.count);
   for (uint64_t row = 0; row < element.count; ++row)
     for (const PlyProperty& property : element.properties) {
-      if (&property == list) RETURN_IF_ERROR(read_face(cursor, element, property, row, vertices, out));
-      else if (!skip_property(cursor, property)) return broken(element, row);
+      if (&property == list)
+        RETURN_IF_ERROR(read_face(cursor, element, property, row, vertices, out));
+      else if (!skip_property(cursor, property))
+        return broken(element, row);
     }
   return absl::OkStatus();
 }
@@ -200,9 +211,12 @@ absl::StatusOr<PlyMesh> read_body(const PlyHeader& header, Cursor cursor) {
   PlyMesh out;
   const uint64_t vertices = header.find("vertex")->count;
   for (const PlyElement& element : header.elements) {
-    if (element.name == "vertex") RETURN_IF_ERROR(read_vertices(cursor, element, out.mesh));
-    else if (element.name == "face") RETURN_IF_ERROR(read_faces(cursor, element, vertices, out));
-    else RETURN_IF_ERROR(skip_element(cursor, element));
+    if (element.name == "vertex")
+      RETURN_IF_ERROR(read_vertices(cursor, element, out.mesh));
+    else if (element.name == "face")
+      RETURN_IF_ERROR(read_faces(cursor, element, vertices, out));
+    else
+      RETURN_IF_ERROR(skip_element(cursor, element));
   }
   if (const uint64_t rest = cursor.rest(); rest != 0)
     return invalid_input("{} bytes of the PLY file follow its last element", rest);
@@ -224,9 +238,12 @@ absl::StatusOr<PlyMesh> read_ply(std::string_view bytes) {
   const std::string_view body = bytes.substr(header.body);
   RETURN_IF_ERROR(check_ply_size(header, body.size()));
   switch (header.format) {
-    case PlyFormat::kAscii: return read_body(header, AsciiCursor(body));
-    case PlyFormat::kLittleEndian: return read_body(header, BinaryCursor<false>(body));
-    case PlyFormat::kBigEndian: return read_body(header, BinaryCursor<true>(body));
+    case PlyFormat::kAscii:
+      return read_body(header, AsciiCursor(body));
+    case PlyFormat::kLittleEndian:
+      return read_body(header, BinaryCursor<false>(body));
+    case PlyFormat::kBigEndian:
+      return read_body(header, BinaryCursor<true>(body));
   }
   PENUMBRA_CHECK(false);
 }

@@ -56,10 +56,14 @@ using Words = std::vector<std::string_view>;
 /// Empty: fine. Else what is wrong with the line.
 std::string read_format(const Words& words, PlyHeader& header) {
   if (words.size() != 3 || words[2] != "1.0") return "expected `format ascii|binary_… 1.0`";
-  if (words[1] == "ascii") header.format = PlyFormat::kAscii;
-  else if (words[1] == "binary_little_endian") header.format = PlyFormat::kLittleEndian;
-  else if (words[1] == "binary_big_endian") header.format = PlyFormat::kBigEndian;
-  else return fmt::format("unknown format '{}'", printable(words[1]));
+  if (words[1] == "ascii")
+    header.format = PlyFormat::kAscii;
+  else if (words[1] == "binary_little_endian")
+    header.format = PlyFormat::kLittleEndian;
+  else if (words[1] == "binary_big_endian")
+    header.format = PlyFormat::kBigEndian;
+  else
+    return fmt::format("unknown format '{}'", printable(words[1]));
   return {};
 }
 
@@ -136,8 +140,10 @@ absl::Status check_ply_size(const PlyHeader& header, uint64_t body_bytes) {
   for (const PlyElement& element : header.elements) {
     uint64_t least = 0;  // bytes of one row whose lists are empty
     for (const PlyProperty& property : element.properties) {
-      if (header.format == PlyFormat::kAscii) least += 2;  // a digit and a blank
-      else least += size_of(property.is_list ? property.count_type : property.type);
+      if (header.format == PlyFormat::kAscii)
+        least += 2;  // a digit and a blank
+      else
+        least += size_of(property.is_list ? property.count_type : property.type);
     }
     // The very last row of a text needs no blank after it.
     const uint64_t room = left + (header.format == PlyFormat::kAscii ? 1 : 0);

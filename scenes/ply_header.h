@@ -17,7 +17,9 @@ constexpr uint64_t size_of(PlyType type) {
   constexpr uint64_t kSizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
   return kSizes[static_cast<size_t>(type)];
 }
-constexpr bool is_integer(PlyType type) { return type < PlyType::kFloat32; }
+constexpr bool is_integer(PlyType type) {
+  return type < PlyType::kFloat32;
+}
 
 struct PlyProperty {
   std::string name;

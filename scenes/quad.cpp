@@ -3,7 +3,8 @@
 namespace penumbra {
 namespace {
 
-Vec3d vector_param(const Params& params, std::string_view name, std::string_view type, const Vec3d& fallback) {
+Vec3d vector_param(const Params& params, std::string_view name, std::string_view type,
+                   const Vec3d& fallback) {
   const Param* const param = params.find(name);
   if (!param || param->type != type || param->numbers.size() < 3) return fallback;
   return {param->numbers[0], param->numbers[1], param->numbers[2]};

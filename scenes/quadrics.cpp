@@ -71,9 +71,15 @@ TriangleMesh grid(int nu, int nv, bool point_at_v0, bool point_at_v1, Surface&& 
 
 }  // namespace
 
-bool Sphere::full() const { return z_min == -radius && z_max == radius && phi_max == kTurn; }
-bool Disk::full() const { return inner == 0 && phi_max == kTurn; }
-bool Cylinder::full() const { return phi_max == kTurn; }
+bool Sphere::full() const {
+  return z_min == -radius && z_max == radius && phi_max == kTurn;
+}
+bool Disk::full() const {
+  return inner == 0 && phi_max == kTurn;
+}
+bool Cylinder::full() const {
+  return phi_max == kTurn;
+}
 
 absl::StatusOr<Sphere> sphere_of(const ShapeEntity& shape, const SceneDescription& description) {
   Sphere sphere;
@@ -144,7 +150,9 @@ TriangleMesh mesh_of(const Cylinder& cylinder) {
   });
 }
 
-TriangleMesh unit_sphere() { return mesh_of(Sphere{1, -1, 1, kTurn}); }
+TriangleMesh unit_sphere() {
+  return mesh_of(Sphere{1, -1, 1, kTurn});
+}
 
 MeshOr make_sphere(const ShapeEntity& shape, const MeshContext& context) {
   ASSIGN_OR_RETURN(const Sphere sphere, sphere_of(shape, context.description));

@@ -36,9 +36,9 @@ class File {
 
 absl::Status system_fault() {
   const int code = errno;
-  return make_status(code == ENOENT || code == ENOTDIR ? absl::StatusCode::kNotFound
-                                                       : absl::StatusCode::kInvalidArgument,
-                     "{}", std::strerror(code));
+  return make_status(
+      code == ENOENT || code == ENOTDIR ? absl::StatusCode::kNotFound : absl::StatusCode::kInvalidArgument,
+      "{}", std::strerror(code));
 }
 
 /// Size of a regular file. (A pipe or a device may never end.)
@@ -64,7 +64,9 @@ absl::StatusOr<std::string> read_bytes(const File& file, uint64_t count) {
   return bytes;
 }
 
-bool is_gzip(std::string_view bytes) { return bytes.starts_with("\x1f\x8b"); }
+bool is_gzip(std::string_view bytes) {
+  return bytes.starts_with("\x1f\x8b");
+}
 
 struct InflateEnd {
   void operator()(z_stream* stream) const { inflateEnd(stream); }

@@ -60,8 +60,9 @@ absl::Status SceneBuilder::set_transform_times(double start, double end, FileLoc
 
 namespace {
 
-absl::StatusOr<Placement> checked_placement(const std::optional<Matrix>& start, const std::optional<Matrix>& end,
-                                            std::string_view what, FileLoc loc, const Diagnostics& diagnostics) {
+absl::StatusOr<Placement> checked_placement(const std::optional<Matrix>& start,
+                                            const std::optional<Matrix>& end, std::string_view what,
+                                            FileLoc loc, const Diagnostics& diagnostics) {
   if (!start || !end)
     return diagnostics.error(loc, "this {}'s transform is not affine (its last column is not 0 0 0 1)", what);
   if (is_singular(*start) || is_singular(*end))
@@ -95,12 +96,23 @@ absl::Status SceneBuilder::set_option(PluginKind kind, Entity entity) {
   RETURN_IF_ERROR(check_name(kind, entity));
   if (kind == PluginKind::kFilm) RETURN_IF_ERROR(check_film(entity, diagnostics_));
   switch (kind) {
-    case PluginKind::kFilm: description_.film = std::move(entity); break;
-    case PluginKind::kSampler: description_.sampler = std::move(entity); break;
-    case PluginKind::kFilter: description_.filter = std::move(entity); break;
-    case PluginKind::kIntegrator: description_.integrator = std::move(entity); break;
-    case PluginKind::kAccelerator: description_.accelerator = std::move(entity); break;
-    default: PENUMBRA_CHECK(false);
+    case PluginKind::kFilm:
+      description_.film = std::move(entity);
+      break;
+    case PluginKind::kSampler:
+      description_.sampler = std::move(entity);
+      break;
+    case PluginKind::kFilter:
+      description_.filter = std::move(entity);
+      break;
+    case PluginKind::kIntegrator:
+      description_.integrator = std::move(entity);
+      break;
+    case PluginKind::kAccelerator:
+      description_.accelerator = std::move(entity);
+      break;
+    default:
+      PENUMBRA_CHECK(false);
   }
   return absl::OkStatus();
 }
@@ -145,8 +157,10 @@ absl::Status SceneBuilder::begin_attributes(FileLoc loc) {
 void SceneBuilder::end_attributes(FileLoc loc) {
   // One stack for attributes and objects: real files interleave ObjectEnd and AttributeEnd.
   const size_t floor = imports_.empty() ? 0 : imports_.back().saved;
-  if (saved_.size() <= floor) diagnostics_.warn(loc, "AttributeEnd without its AttributeBegin: ignored");
-  else pop_state();
+  if (saved_.size() <= floor)
+    diagnostics_.warn(loc, "AttributeEnd without its AttributeBegin: ignored");
+  else
+    pop_state();
 }
 
 absl::Status SceneBuilder::begin_transform(FileLoc loc) {
@@ -184,8 +198,10 @@ void SceneBuilder::end_import() {
 absl::Status SceneBuilder::add_defaults(const std::string& target, Params params, FileLoc loc) {
   static constexpr std::string_view kTargets[] = {"shape", "light", "material", "medium", "texture"};
   if (std::find(std::begin(kTargets), std::end(kTargets), target) == std::end(kTargets))
-    return diagnostics_.error(loc, "Attribute: unknown target '{}'; there are shape, light, material, medium, "
-                              "texture", printable(target));
+    return diagnostics_.error(loc,
+                              "Attribute: unknown target '{}'; there are shape, light, material, medium, "
+                              "texture",
+                              printable(target));
   auto defaults = state_.defaults ? *state_.defaults : std::map<std::string, std::vector<Param>>();
   std::vector<Param>& list = defaults[target];
   std::move(params.all.begin(), params.all.end(), std::back_inserter(list));

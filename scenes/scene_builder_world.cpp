@@ -8,9 +8,15 @@ namespace penumbra {
 namespace {
 
 /// Indices of names that are not defined yet are stored as -2 - k, k into a list of forward names.
-int forward_code(size_t k) { return -2 - static_cast<int>(k); }
-bool is_forward(int code) { return code <= -2; }
-size_t forward_index(int code) { return static_cast<size_t>(-2 - code); }
+int forward_code(size_t k) {
+  return -2 - static_cast<int>(k);
+}
+bool is_forward(int code) {
+  return code <= -2;
+}
+size_t forward_index(int code) {
+  return static_cast<size_t>(-2 - code);
+}
 
 }  // namespace
 
@@ -111,7 +117,8 @@ absl::Status SceneBuilder::add_light(Entity entity) {
   RETURN_IF_ERROR(check_name(PluginKind::kLight, entity));
   prepend_defaults("light", entity.params);
   LightEntity light;
-  const bool at_infinity = entity.type == "infinite" || entity.type == "exinfinite" || entity.type == "distant";
+  const bool at_infinity =
+      entity.type == "infinite" || entity.type == "exinfinite" || entity.type == "distant";
   ASSIGN_OR_RETURN(light.placement, at_infinity ? placement_at_infinity("light source", entity.loc)
                                                 : placement("light source", entity.loc));
   resolve_textures(entity.type, entity.params);
@@ -197,8 +204,7 @@ void SceneBuilder::resolve_forward_materials() {
   for (size_t k = 0; k < found.size(); ++k) {
     const auto& [name, loc] = forward_materials_[k];
     found[k] = materials_.find(name);
-    if (found[k] < 0)
-      diagnostics_.warn(loc, "no material '{}': the default matte instead", printable(name));
+    if (found[k] < 0) diagnostics_.warn(loc, "no material '{}': the default matte instead", printable(name));
   }
   const auto resolve = [&found](std::vector<ShapeEntity>& shapes) {
     for (ShapeEntity& shape : shapes)

@@ -28,8 +28,10 @@ class ScopedNames {
   void undo_to(size_t mark) {
     while (undo_.size() > mark) {
       const auto& [name, before] = undo_.back();
-      if (before < 0) visible_.erase(name);
-      else visible_[name] = before;
+      if (before < 0)
+        visible_.erase(name);
+      else
+        visible_[name] = before;
       undo_.pop_back();
     }
   }

@@ -7,12 +7,37 @@ namespace penumbra {
 namespace {
 
 // pbrt-v3's and v4's parameters that are looked up among the float textures, whatever the plugin.
-constexpr std::string_view kFloatParameters[] = {
-    "alpha", "shadowalpha", "bumpmap", "displacement", "sigma", "roughness", "uroughness", "vroughness",
-    "index", "interface.roughness", "interface.uroughness", "interface.vroughness", "conductor.roughness",
-    "conductor.uroughness", "conductor.vroughness", "thickness", "g", "metallic", "speculartint",
-    "anisotropic", "sheen", "sheentint", "clearcoat", "clearcoatgloss", "spectrans", "flatness",
-    "difftrans", "eumelanin", "pheomelanin", "beta_m", "beta_n"};
+constexpr std::string_view kFloatParameters[] = {"alpha",
+                                                 "shadowalpha",
+                                                 "bumpmap",
+                                                 "displacement",
+                                                 "sigma",
+                                                 "roughness",
+                                                 "uroughness",
+                                                 "vroughness",
+                                                 "index",
+                                                 "interface.roughness",
+                                                 "interface.uroughness",
+                                                 "interface.vroughness",
+                                                 "conductor.roughness",
+                                                 "conductor.uroughness",
+                                                 "conductor.vroughness",
+                                                 "thickness",
+                                                 "g",
+                                                 "metallic",
+                                                 "speculartint",
+                                                 "anisotropic",
+                                                 "sheen",
+                                                 "sheentint",
+                                                 "clearcoat",
+                                                 "clearcoatgloss",
+                                                 "spectrans",
+                                                 "flatness",
+                                                 "difftrans",
+                                                 "eumelanin",
+                                                 "pheomelanin",
+                                                 "beta_m",
+                                                 "beta_n"};
 
 }  // namespace
 

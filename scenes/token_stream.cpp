@@ -49,8 +49,7 @@ absl::Status TokenStream::enter(const std::string& name, FileLoc loc) {
   if (!path.ok())
     return diagnostics_.error(loc, "cannot include '{}': {}", printable(name), message_of(path.status()));
   for (const Source& source : open_)
-    if (*source.path == *path)
-      return diagnostics_.error(loc, "'{}' includes itself", printable(name));
+    if (*source.path == *path) return diagnostics_.error(loc, "'{}' includes itself", printable(name));
   ASSIGN_OR_RETURN(const Text* const text, text_of(name, *path, loc));
   open_.push_back({Lexer(text->bytes, text->file), &texts_.find(*path)->first});
   return absl::OkStatus();

@@ -39,9 +39,9 @@ std::optional<Matrix> look_at(const Vec3d& eye, const Vec3d& target, const Vec3d
   const Vec3d right = across.normalized();
   const Vec3d above = forward.cross(right);
   // The inverse of the rigid map with rows right, above, forward, eye.
-  return Matrix(right.x, above.x, forward.x, 0,    //
-                right.y, above.y, forward.y, 0,    //
-                right.z, above.z, forward.z, 0,    //
+  return Matrix(right.x, above.x, forward.x, 0,  //
+                right.y, above.y, forward.y, 0,  //
+                right.z, above.z, forward.z, 0,  //
                 -right.dot(eye), -above.dot(eye), -forward.dot(eye), 1);
 }
 

@@ -1,0 +1,84 @@
+#include <map>
+
+#include "proto/status.h"
+#include "scenes/each_shape.h"
+#include "scenes/needs.h"
+#include "scenes/pbrt_names.h"
+
+namespace penumbra {
+namespace {
+
+/// How often something occurs, and where first.
+struct Tally {
+  int count = 0;
+  FileLoc first;
+  void add(FileLoc loc) {
+    if (count++ == 0) first = loc;
+  }
+};
+
+/// pbrt integrators whose light travels further than from a light to a first rough surface.
+bool asks_for_indirect_light(const Entity& integrator) {
+  const std::string& type = integrator.type;
+  if (type == "bdpt" || type == "mlt" || type == "sppm" || type == "lightpath" || type == "randomwalk")
+    return true;
+  if (type != "path" && type != "volpath" && type != "simplepath" && type != "simplevolpath") return false;
+  return integrator.params.integer("maxdepth", 5) > 1;
+}
+
+void add_entities(const SceneDescription& scene, std::vector<std::string>& out) {
+  const auto say = [&](const Entity& entity, std::string_view what) {
+    out.push_back(fmt::format("{}: {}", scene.place(entity.loc), what));
+  };
+  if (support_of(PluginKind::kCamera, scene.camera.type) != Support::kRendered && !scene.camera.type.empty())
+    say(scene.camera,
+        fmt::format("camera '{}' is not supported: a perspective camera instead", scene.camera.type));
+  if (support_of(PluginKind::kFilter, scene.filter.type) != Support::kRendered && !scene.filter.type.empty())
+    say(scene.filter, fmt::format("pixel filter '{}' is not supported", scene.filter.type));
+  if (asks_for_indirect_light(scene.integrator))
+    say(scene.integrator,
+        fmt::format("integrator '{}' asks for indirect light: only direct light and specular "
+                    "chains are rendered",
+                    scene.integrator.type));
+  else if (support_of(PluginKind::kIntegrator, scene.integrator.type) == Support::kSubstituted)
+    say(scene.integrator,
+        fmt::format("integrator '{}' is not supported: direct light instead", scene.integrator.type));
+}
+
+void add_left_out(const SceneDescription& scene, std::vector<std::string>& out) {
+  std::map<std::string, Tally> shapes, lights;
+  each_shape(scene, [&shapes](const ShapeEntity& shape) {
+    if (support_of(PluginKind::kShape, shape.type) == Support::kSubstituted)
+      shapes[shape.type].add(shape.loc);
+  });
+  for (const LightEntity& light : scene.lights)
+    if (support_of(PluginKind::kLight, light.type) == Support::kSubstituted)
+      lights[light.type].add(light.loc);
+  for (const auto& [noun, tallies] : {std::pair("shape", &shapes), {"light", &lights}})
+    for (const auto& [type, tally] : *tallies)
+      out.push_back(fmt::format("{}: {} '{}' is not supported: {} left out", scene.place(tally.first), noun,
+                                type, tally.count));
+}
+
+void add_effects(const SceneDescription& scene, std::vector<std::string>& out) {
+  static const std::map<std::string, std::string> kInstead = {
+      {"lens", "a pinhole instead"},
+      {"motion", "everything stands as when the shutter opens"},
+      {"media", "vacuum instead"},
+  };
+  for (const Need& need : needs_of(scene))
+    if (const auto instead = kInstead.find(need.effect); instead != kInstead.end())
+      out.push_back(fmt::format("{} is not rendered yet: {} ({})", need.effect, instead->second, need.why));
+}
+
+}  // namespace
+
+std::vector<std::string> unsupported(const SceneDescription& description) {
+  std::vector<std::string> out;
+  add_entities(description, out);
+  add_left_out(description, out);
+  add_effects(description, out);
+  return out;
+}
+
+}  // namespace penumbra

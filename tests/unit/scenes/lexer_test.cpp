@@ -1,0 +1,3 @@
+#include "scenes/lexer.h"
+
+#include <gtest/gtest.h>
