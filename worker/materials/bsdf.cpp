@@ -110,9 +110,13 @@ double Bsdf::pdf(const Pair& directions) const {
   return sum > 0 ? sum / total_weight_ : 0;
 }
 
-Rgb Bsdf::f(const Vec3f& wo, const Vec3f& wi) const { return f(pair(wo, wi)); }
+Rgb Bsdf::f(const Vec3f& wo, const Vec3f& wi) const {
+  return f(pair(wo, wi));
+}
 
-double Bsdf::pdf(const Vec3f& wo, const Vec3f& wi) const { return pdf(pair(wo, wi)); }
+double Bsdf::pdf(const Vec3f& wo, const Vec3f& wi) const {
+  return pdf(pair(wo, wi));
+}
 
 const Bsdf::Weighted& Bsdf::choose(double choice) const {
   double rest = choice * total_weight_;

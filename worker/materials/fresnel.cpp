@@ -46,7 +46,9 @@ double fresnel_diffuse_reflectance(double n) {
 
 namespace {
 
-Rgb reflectance_of(const FresnelNone&, double) { return Rgb(1); }
+Rgb reflectance_of(const FresnelNone&, double) {
+  return Rgb(1);
+}
 
 Rgb reflectance_of(const FresnelDielectric& d, double cos_i) {
   return Rgb(static_cast<float>(fresnel_dielectric(cos_i, d.eta_i, d.eta_t)));

@@ -10,7 +10,9 @@
 namespace penumbra {
 namespace {
 
-double pow5(double x) { return (x * x) * (x * x) * x; }
+double pow5(double x) {
+  return (x * x) * (x * x) * x;
+}
 
 /// 1 - (1 - c/2)⁵ expanded, so that it keeps its digits at grazing angles.
 double coat_transmission(double c) {
@@ -23,12 +25,15 @@ double coat_transmission(double c) {
 Rgb f(const FresnelBlend& lobe, const Vec3d& wo, const Vec3d& wi) {
   const Vec3d sum = wi + wo;
   if (wi.z == 0 || wo.z == 0 || sum == Vec3d(0)) return Rgb(0);
-  const double base = 28 / (23 * std::numbers::pi) * coat_transmission(abs_cos(wi)) * coat_transmission(abs_cos(wo));
+  const double base =
+      28 / (23 * std::numbers::pi) * coat_transmission(abs_cos(wi)) * coat_transmission(abs_cos(wo));
   const Vec3d wh = sum.normalized();
   const double cos_d = std::abs(wi ^ wh);
   const double coat = distribution(lobe.facets, wh) / (4 * cos_d * std::max(abs_cos(wi), abs_cos(wo)));
-  const Rgb schlick = lobe.specular + (Rgb(1) - lobe.specular) * static_cast<float>(pow5(1 - std::min(cos_d, 1.0)));
-  return lobe.diffuse * (Rgb(1) - lobe.specular) * static_cast<float>(base) + schlick * static_cast<float>(coat);
+  const Rgb schlick =
+      lobe.specular + (Rgb(1) - lobe.specular) * static_cast<float>(pow5(1 - std::min(cos_d, 1.0)));
+  return lobe.diffuse * (Rgb(1) - lobe.specular) * static_cast<float>(base) +
+         schlick * static_cast<float>(coat);
 }
 
 // Half of the samples go to the base, half to the coat, as in pbrt-v3.

@@ -8,6 +8,7 @@
 //   kFolds      f is also non-zero between the shading and the geometric horizon: see Bsdf::pdf
 #include <variant>
 
+#include "worker/materials/coated_lambert.h"
 #include "worker/materials/fresnel_blend.h"
 #include "worker/materials/lambert.h"
 #include "worker/materials/lambert_transmission.h"
@@ -19,7 +20,8 @@
 
 namespace penumbra {
 
-using Lobe = std::variant<Lambert, OrenNayar, LambertTransmission, MicrofacetReflection, MicrofacetTransmission,
-                          FresnelBlend, SpecularReflection, SpecularTransmission>;
+using Lobe =
+    std::variant<Lambert, OrenNayar, LambertTransmission, MicrofacetReflection, MicrofacetTransmission,
+                 FresnelBlend, CoatedLambert, SpecularReflection, SpecularTransmission>;
 
 }  // namespace penumbra

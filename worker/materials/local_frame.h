@@ -7,12 +7,20 @@
 
 namespace penumbra {
 
-inline double abs_cos(const Vec3d& w) { return std::abs(w.z); }
-inline double sin2(const Vec3d& w) { return w.x * w.x + w.y * w.y; }
-inline bool same_hemisphere(const Vec3d& a, const Vec3d& b) { return a.z * b.z > 0; }
+inline double abs_cos(const Vec3d& w) {
+  return std::abs(w.z);
+}
+inline double sin2(const Vec3d& w) {
+  return w.x * w.x + w.y * w.y;
+}
+inline bool same_hemisphere(const Vec3d& a, const Vec3d& b) {
+  return a.z * b.z > 0;
+}
 
 /// w mirrored about h (both away from the surface).
-inline Vec3d reflected(const Vec3d& w, const Vec3d& h) { return h * (2 * (w ^ h)) - w; }
+inline Vec3d reflected(const Vec3d& w, const Vec3d& h) {
+  return h * (2 * (w ^ h)) - w;
+}
 
 /// Direction of w after refraction at a facet with unit normal n on w's side; eta = η(w's side) / η(far
 /// side). False: total internal reflection.

@@ -24,7 +24,9 @@ double lambda(const TrowbridgeReitz& d, const Vec3d& w) {
   return a / (2 * (1 + std::sqrt(1 + a)));
 }
 
-double masking(const TrowbridgeReitz& d, const Vec3d& w) { return 1 / (1 + lambda(d, w)); }
+double masking(const TrowbridgeReitz& d, const Vec3d& w) {
+  return 1 / (1 + lambda(d, w));
+}
 
 double masking_shadowing(const TrowbridgeReitz& d, const Vec3d& wo, const Vec3d& wi) {
   return 1 / (1 + lambda(d, wo) + lambda(d, wi));
@@ -60,6 +62,8 @@ double alpha_of_roughness_v3(double roughness) {
   return 1.62142 + x * (0.819955 + x * (0.1734 + x * (0.0171201 + x * 0.000640711)));
 }
 
-double alpha_of_roughness_v4(double roughness) { return std::sqrt(std::max(0.0, roughness)); }
+double alpha_of_roughness_v4(double roughness) {
+  return std::sqrt(std::max(0.0, roughness));
+}
 
 }  // namespace penumbra

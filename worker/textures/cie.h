@@ -27,6 +27,8 @@ Rgb rgb_of_spectrum(const SampledSpectrum& spectrum);
 Rgb rgb_of_blackbody(double kelvin);
 
 /// Rec. 709 luminance.
-inline float luminance(const Rgb& c) { return 0.212671f * c.x + 0.715160f * c.y + 0.072169f * c.z; }
+inline float luminance(const Rgb& c) {
+  return 0.212671f * c.x + 0.715160f * c.y + 0.072169f * c.z;
+}
 
 }  // namespace penumbra

@@ -18,7 +18,8 @@ Coverage coverage(int i, int fine, int coarse) {
   Coverage c;
   c.first = static_cast<int>(lo);
   for (int j = c.first; j < hi && c.count < 4; ++j) {
-    c.weights[c.count++] = static_cast<float>((std::min<double>(j + 1, hi) - std::max<double>(j, lo)) / scale);
+    c.weights[c.count++] =
+        static_cast<float>((std::min<double>(j + 1, hi) - std::max<double>(j, lo)) / scale);
   }
   return c;
 }

@@ -15,7 +15,8 @@ float tame(float s, Wrap wrap) {
 
 std::variant<Pyramid<Imath::half>, Pyramid<float>> make_pyramid(Texels texels) {
   const auto fits = [](float v) { return std::abs(v) <= HALF_MAX; };
-  if (std::all_of(texels.values.begin(), texels.values.end(), fits)) return Pyramid<Imath::half>(std::move(texels));
+  if (std::all_of(texels.values.begin(), texels.values.end(), fits))
+    return Pyramid<Imath::half>(std::move(texels));
   return Pyramid<float>(std::move(texels));
 }
 
@@ -23,7 +24,8 @@ std::variant<Pyramid<Imath::half>, Pyramid<float>> make_pyramid(Texels texels) {
 
 Image::Image(Texels texels) : pyramid_(make_pyramid(std::move(texels))) {}
 
-Rgb Image::lookup(const Vec2f& st, const Vec2f& dst_dx, const Vec2f& dst_dy, const ImageSampling& sampling) const {
+Rgb Image::lookup(const Vec2f& st, const Vec2f& dst_dx, const Vec2f& dst_dy,
+                  const ImageSampling& sampling) const {
   // pbrt's t runs upwards, rows run downwards.
   const Vec2f at(tame(st.x, sampling.wrap), tame(1 - st.y, sampling.wrap));
   const Vec2f dx(dst_dx.x, -dst_dx.y), dy(dst_dy.x, -dst_dy.y);

@@ -74,7 +74,7 @@ void decode_all(std::vector<float>& values, const Encoding& encoding) {
     const float scaled = v * 255;
     const float index = std::round(scaled);
     v = index >= 0 && index <= 255 && static_cast<float>(index) / 255 == v ? table[static_cast<int>(index)]
-                                                                          : decode(v, encoding);
+                                                                           : decode(v, encoding);
   }
 }
 
@@ -84,7 +84,8 @@ absl::StatusOr<Texels> read_image(const std::string& path, bool grey, const Enco
   ASSIGN_OR_RETURN(Stored stored, read_stored(path));
   if (grey) to_grey(stored);
   Encoding chosen = encoding;
-  if (chosen.kind == Encoding::kAutomatic) chosen.kind = stored.integers ? Encoding::kSrgb : Encoding::kLinear;
+  if (chosen.kind == Encoding::kAutomatic)
+    chosen.kind = stored.integers ? Encoding::kSrgb : Encoding::kLinear;
   decode_all(stored.values, chosen);
   if (!std::all_of(stored.values.begin(), stored.values.end(), [](float v) { return std::isfinite(v); })) {
     return invalid_input("{}: a value that is not finite", path);

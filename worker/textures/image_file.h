@@ -10,7 +10,7 @@ namespace penumbra {
 /// How a file's numbers encode linear values: v = decode(stored).
 struct Encoding {
   enum Kind { kAutomatic, kLinear, kSrgb, kGamma } kind = kAutomatic;  ///< kAutomatic: sRGB for integers
-  float gamma = 1;                                                   ///< kGamma: v = stored^gamma
+  float gamma = 1;                                                     ///< kGamma: v = stored^gamma
   bool operator==(const Encoding&) const = default;
 };
 

@@ -17,7 +17,8 @@ Vec2f spherical(const Vec3f& p) {
 }
 
 Vec2f cylindrical(const Vec3f& p) {
-  const float azimuth = (std::numbers::pi_v<float> + std::atan2(p.y, p.x)) * (std::numbers::inv_pi_v<float> / 2);
+  const float azimuth =
+      (std::numbers::pi_v<float> + std::atan2(p.y, p.x)) * (std::numbers::inv_pi_v<float> / 2);
   return {azimuth, p.normalized().z};
 }
 
@@ -77,7 +78,8 @@ absl::StatusOr<Mapping2D> make_mapping(const TextureEntity& entity, const SceneD
   const Imath::M44f inverse(entity.placement.start.inverse());
   if (kind == "spherical") return SphericalMapping{inverse};
   if (kind == "cylindrical") return CylindricalMapping{inverse};
-  return invalid_input("{}: unknown texture mapping '{}'", description.place(params.find("mapping")->loc), kind);
+  return invalid_input("{}: unknown texture mapping '{}'", description.place(params.find("mapping")->loc),
+                       kind);
 }
 
 TextureCoordinates map(const Mapping2D& mapping, const TexturePoint& point) {

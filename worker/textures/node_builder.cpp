@@ -41,7 +41,8 @@ absl::StatusOr<ImageSampling> sampling_of(const Params& params, const SceneDescr
   } else if (wrap != "repeat") {
     return invalid_input("{}: unknown wrap mode '{}'", description.place(params.find("wrap")->loc), wrap);
   }
-  const std::string filter = params.string("filter", params.boolean("trilinear", false) ? "trilinear" : "ewa");
+  const std::string filter =
+      params.string("filter", params.boolean("trilinear", false) ? "trilinear" : "ewa");
   if (is_one_of(filter, {"ewa", "EWA"})) {
     sampling.filter = Filter::kEwa;
   } else if (filter == "trilinear") {
@@ -51,7 +52,8 @@ absl::StatusOr<ImageSampling> sampling_of(const Params& params, const SceneDescr
   } else if (filter == "point") {
     sampling.filter = Filter::kPoint;
   } else {
-    return invalid_input("{}: unknown texture filter '{}'", description.place(params.find("filter")->loc), filter);
+    return invalid_input("{}: unknown texture filter '{}'", description.place(params.find("filter")->loc),
+                         filter);
   }
   sampling.max_anisotropy = number(params, "maxanisotropy", 8);
   if (!(sampling.max_anisotropy >= 1 && sampling.max_anisotropy <= 1024)) {
@@ -109,8 +111,9 @@ absl::StatusOr<Node> NodeBuilder::build_image(const TextureEntity& entity) {
     status = loaded.status();
   }
   // As pbrt-v3: the texture is 1 everywhere, times its scale.
-  RETURN_IF_ERROR(complain(fmt::format("{}: image '{}' of texture '{}' cannot be read ({}): constant 1 instead",
-                                       place(entity), name, entity.name, message_of(status))));
+  RETURN_IF_ERROR(
+      complain(fmt::format("{}: image '{}' of texture '{}' cannot be read ({}): constant 1 instead",
+                           place(entity), name, entity.name, message_of(status))));
   return ConstantNode{Rgb(node.scale)};
 }
 
@@ -130,7 +133,8 @@ absl::StatusOr<Node> NodeBuilder::build_noise(const TextureEntity& entity) {
   const Imath::M44f from_world(entity.placement.start);
   const Octaves octaves = octaves_of(entity.params);
   if (entity.type == "marble") {
-    return MarbleNode{from_world, octaves, number(entity.params, "scale", 1), number(entity.params, "variation", 0.2f)};
+    return MarbleNode{from_world, octaves, number(entity.params, "scale", 1),
+                      number(entity.params, "variation", 0.2f)};
   }
   if (entity.type == "wrinkled") return NoiseNode{NoiseKind::kWrinkled, from_world, octaves};
   if (entity.type == "windy") return NoiseNode{NoiseKind::kWindy, from_world, octaves};

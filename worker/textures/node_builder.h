@@ -24,7 +24,8 @@ class NodeBuilder {
   absl::StatusOr<Node> build_checkerboard(const TextureEntity& entity);
   absl::StatusOr<Node> build_noise(const TextureEntity& entity);
   absl::StatusOr<Node> build_with_mapping(const TextureEntity& entity);
-  absl::StatusOr<std::shared_ptr<const Image>> image(const std::string& path, bool grey, const Encoding& encoding);
+  absl::StatusOr<std::shared_ptr<const Image>> image(const std::string& path, bool grey,
+                                                     const Encoding& encoding);
   absl::StatusOr<RgbValue> value(const TextureEntity& entity, std::string_view name, float fallback) const;
   /// With strict the message as an error, else a warning and OK.
   absl::Status complain(std::string message);

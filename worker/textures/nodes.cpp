@@ -23,7 +23,9 @@ Rgb value_of(const UnusedNode&, const Evaluation&) {
   return Rgb(0);
 }
 
-Rgb value_of(const ConstantNode& node, const Evaluation&) { return node.value; }
+Rgb value_of(const ConstantNode& node, const Evaluation&) {
+  return node.value;
+}
 
 Rgb value_of(const ImageNode& node, const Evaluation& at) {
   const TextureCoordinates c = map(node.mapping, at.point);
@@ -32,7 +34,9 @@ Rgb value_of(const ImageNode& node, const Evaluation& at) {
   return {std::max(0.0f, 1 - value.x), std::max(0.0f, 1 - value.y), std::max(0.0f, 1 - value.z)};
 }
 
-Rgb value_of(const ScaleNode& node, const Evaluation& at) { return at(node.a) * at(node.b); }
+Rgb value_of(const ScaleNode& node, const Evaluation& at) {
+  return at(node.a) * at(node.b);
+}
 
 Rgb value_of(const MixNode& node, const Evaluation& at) {
   const Rgb amount = at(node.amount);
@@ -63,9 +67,11 @@ float odd_fraction(float s, float width) {
 
 Rgb value_of(const Checkerboard2DNode& node, const Evaluation& at) {
   const TextureCoordinates c = map(node.mapping, at.point);
-  const float ds = std::max(std::abs(c.dx.x), std::abs(c.dy.x)), dt = std::max(std::abs(c.dx.y), std::abs(c.dy.y));
-  const Vec2f &st = c.st;
-  const bool one_square = std::floor(st.x - ds) == std::floor(st.x + ds) && std::floor(st.y - dt) == std::floor(st.y + dt);
+  const float ds = std::max(std::abs(c.dx.x), std::abs(c.dy.x)),
+              dt = std::max(std::abs(c.dx.y), std::abs(c.dy.y));
+  const Vec2f& st = c.st;
+  const bool one_square =
+      std::floor(st.x - ds) == std::floor(st.x + ds) && std::floor(st.y - dt) == std::floor(st.y + dt);
   if (!node.filtered || one_square) {
     const bool odd = std::fmod(std::floor(st.x) + std::floor(st.y), 2.0f) != 0;
     return at(odd ? node.odd : node.even);

@@ -25,8 +25,12 @@ float gradient(int x, int y, int z, const Vec3f& d) {
   return ((h & 1) != 0 ? -a : a) + ((h & 2) != 0 ? -b : b);
 }
 
-float fade(float t) { return t * t * t * (t * (t * 6 - 15) + 10); }
-float lerp(float t, float a, float b) { return a + t * (b - a); }
+float fade(float t) {
+  return t * t * t * (t * (t * 6 - 15) + 10);
+}
+float lerp(float t, float a, float b) {
+  return a + t * (b - a);
+}
 
 float smoothstep(float lo, float hi, float x) {
   const float t = std::clamp((x - lo) / (hi - lo), 0.0f, 1.0f);
@@ -61,7 +65,8 @@ float noise(const Vec3f& p) {
   const int x = static_cast<int>(cell.x), y = static_cast<int>(cell.y), z = static_cast<int>(cell.z);
   const Vec3f d = p - cell;
   const auto corner = [&](int i, int j, int k) {
-    return gradient(x + i, y + j, z + k, d - Vec3f(static_cast<float>(i), static_cast<float>(j), static_cast<float>(k)));
+    return gradient(x + i, y + j, z + k,
+                    d - Vec3f(static_cast<float>(i), static_cast<float>(j), static_cast<float>(k)));
   };
   const float u = fade(d.x), v = fade(d.y), w = fade(d.z);
   const auto row = [&](int j, int k) { return lerp(u, corner(0, j, k), corner(1, j, k)); };

@@ -23,7 +23,8 @@ template <class T>
 Pyramid<T>::Pyramid(Texels texels) : channels_(texels.channels) {
   PENUMBRA_CHECK(texels.width > 0 && texels.height > 0 && (channels_ == 1 || channels_ == 3));
   for (;;) {
-    levels_.push_back({texels.width, texels.height, std::vector<T>(texels.values.begin(), texels.values.end())});
+    levels_.push_back(
+        {texels.width, texels.height, std::vector<T>(texels.values.begin(), texels.values.end())});
     if (texels.width == 1 && texels.height == 1) return;
     texels = halved(texels);
   }
@@ -106,7 +107,7 @@ Rgb Pyramid<T>::ewa(const Vec2f& st, Vec2f major, Vec2f minor, const ImageSampli
 
 template <class T>
 Rgb Pyramid<T>::ellipse(const Level& level, const Vec2f& st, const Vec2f& axis0, const Vec2f& axis1,
-                               Wrap wrap) const {
+                        Wrap wrap) const {
   const float w = static_cast<float>(level.width), h = static_cast<float>(level.height);
   const float s = st.x * w - 0.5f, t = st.y * h - 0.5f;
   const Vec2f d0(axis0.x * w, axis0.y * h), d1(axis1.x * w, axis1.y * h);
@@ -115,7 +116,8 @@ Rgb Pyramid<T>::ellipse(const Level& level, const Vec2f& st, const Vec2f& axis0,
   const float b = -2 * (d0.x * d0.y + d1.x * d1.y);
   const float c = d0.x * d0.x + d1.x * d1.x + 1;
   const float f = a * c - b * b / 4;
-  const float half_x = std::sqrt(c), half_y = std::sqrt(a);  // of the bounds: √(C F / (AC - B²/4)), F = AC - B²/4
+  const float half_x = std::sqrt(c),
+              half_y = std::sqrt(a);  // of the bounds: √(C F / (AC - B²/4)), F = AC - B²/4
   const int x0 = static_cast<int>(std::ceil(s - half_x)), x1 = static_cast<int>(std::floor(s + half_x));
   const int y0 = static_cast<int>(std::ceil(t - half_y)), y1 = static_cast<int>(std::floor(t + half_y));
   Rgb sum(0);
@@ -135,7 +137,7 @@ Rgb Pyramid<T>::ellipse(const Level& level, const Vec2f& st, const Vec2f& axis0,
 
 template <class T>
 Rgb Pyramid<T>::lookup(const Vec2f& st, const Vec2f& dx, const Vec2f& dy,
-                              const ImageSampling& sampling) const {
+                       const ImageSampling& sampling) const {
   switch (sampling.filter) {
     case Filter::kPoint:
       return texel(levels_[0], static_cast<int>(std::floor(st.x * levels_[0].width)),

@@ -16,7 +16,8 @@ namespace {
 /// Wavelength/value pairs one after the other. pbrt sorts them; we do too.
 absl::StatusOr<Rgb> rgb_of_pairs(std::vector<double> numbers, const std::string& place) {
   if (numbers.empty() || numbers.size() % 2 != 0) {
-    return invalid_input("{}: a spectrum needs wavelength/value pairs, not {} numbers", place, numbers.size());
+    return invalid_input("{}: a spectrum needs wavelength/value pairs, not {} numbers", place,
+                         numbers.size());
   }
   std::vector<std::pair<double, double>> pairs;
   for (size_t i = 0; i < numbers.size(); i += 2) {
@@ -25,7 +26,8 @@ absl::StatusOr<Rgb> rgb_of_pairs(std::vector<double> numbers, const std::string&
     }
     pairs.emplace_back(numbers[i], numbers[i + 1]);
   }
-  std::stable_sort(pairs.begin(), pairs.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<double> wavelengths, values;
   for (const auto& [nm, value] : pairs) {
     wavelengths.push_back(nm);
@@ -77,7 +79,8 @@ absl::StatusOr<Rgb> rgb_of_blackbody_param(const Param& param, const std::string
     }
     const Rgb color = rgb_of_blackbody(kelvin);
     if (n == 1) return color / luminance(color);
-    if (i + 1 == n) return invalid_input("{}: blackbody '{}' needs temperature/scale pairs", place, param.name);
+    if (i + 1 == n)
+      return invalid_input("{}: blackbody '{}' needs temperature/scale pairs", place, param.name);
     sum += color * static_cast<float>(param.numbers[i + 1]);
   }
   return sum;
