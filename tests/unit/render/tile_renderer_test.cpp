@@ -1,0 +1,84 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "tests/support/render.h"
+#include "worker/render/renderer.h"
+
+namespace penumbra {
+namespace {
+
+const char* const kScene = R"(LookAt 0 3 6  0 0.5 0  0 1 0
+Camera "perspective" "float fov" 40
+WorldBegin
+AttributeBegin
+AreaLightSource "diffuse" "rgb L" [ 5 5 5 ]
+Shape "quad" "point o" [ -0.7 2.2 -0.5 ] "vector u" [ 1.4 0 0 ] "vector v" [ 0 0 0.9 ]
+AttributeEnd
+Material "plastic"
+Shape "sphere" "float radius" 0.7
+Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ] "point P" [ -4 -0.7 -4  -4 -0.7 4  4 -0.7 4  4 -0.7 -4 ]
+)";
+
+TileTask task(const JobSpec& spec, PassRange first, PassRange second) {
+  TileTask t;
+  t.tile = spec.crop;
+  t.passes = {first, second};
+  return t;
+}
+
+TEST(TileRenderer, TheOrderOfSlicesIsNoPartOfTheImage) {
+  const ScenePtr scene = test::load_text(kScene);
+  ASSERT_TRUE(scene);
+  const JobSpec spec = test::job(16, 12, {"bsdf:1+line-sa@u:1", "sa:2"}, 9);
+  const std::atomic<bool> cancel = false;
+  TileTask a = task(spec, {0, 9}, {0, 9}), b = a;
+  a.shuffle = 1;
+  b.shuffle = 99;
+  const TaskOutcome x = render_tile(*scene, spec, a, cancel), y = render_tile(*scene, spec, b, cancel);
+  for (int m = 0; m < 2; ++m) {
+    EXPECT_EQ(x.pixels.mixes[m].mean, y.pixels.mixes[m].mean);
+    EXPECT_EQ(x.pixels.mixes[m].m2, y.pixels.mixes[m].m2);
+    EXPECT_GT(x.pixels.mixes[m].mean[3 * 16 * 6 + 24], 0) << "the picture is black";
+  }
+}
+
+TEST(TileRenderer, MixesAndPassesHaveRandomNumbersOfTheirOwn) {
+  const ScenePtr scene = test::load_text(kScene);
+  ASSERT_TRUE(scene);
+  const JobSpec spec = test::job(16, 12, {"sa:1", "sa:1"}, 1);
+  const std::atomic<bool> cancel = false;
+  const TaskOutcome first = render_tile(*scene, spec, task(spec, {0, 1}, {0, 1}), cancel);
+  const TaskOutcome second = render_tile(*scene, spec, task(spec, {1, 2}, {1, 2}), cancel);
+  EXPECT_NE(first.pixels.mixes[0].mean, first.pixels.mixes[1].mean);
+  EXPECT_NE(first.pixels.mixes[0].mean, second.pixels.mixes[0].mean);
+}
+
+TEST(TileRenderer, APilotReportsCostsAndNoPixels) {
+  const ScenePtr scene = test::load_text(kScene);
+  ASSERT_TRUE(scene);
+  const JobSpec spec = test::job(16, 12, {"sa:1", "bsdf:1"}, 1);
+  const std::atomic<bool> cancel = false;
+  TileTask pilot = task(spec, {0, 1000}, {0, 1000});
+  pilot.kind = TaskKind::kPilot;
+  pilot.pilot_seconds = 0.01;
+  const TaskOutcome outcome = render_tile(*scene, spec, pilot, cancel);
+  EXPECT_TRUE(outcome.pixels.mixes.empty());
+  for (const MixCost& cost : outcome.costs) {
+    EXPECT_GE(cost.passes, 1);
+    EXPECT_LT(cost.passes, 1000);
+    EXPECT_GT(cost.cpu_seconds, 0);
+    EXPECT_GT(cost.rays, 0u);
+  }
+}
+
+TEST(TileRenderer, CancelLeavesBetweenPasses) {
+  const ScenePtr scene = test::load_text(kScene);
+  ASSERT_TRUE(scene);
+  const JobSpec spec = test::job(16, 12, {"sa:1", "sa:1"}, 1);
+  const std::atomic<bool> cancel = true;
+  EXPECT_TRUE(render_tile(*scene, spec, task(spec, {0, 100}, {0, 100}), cancel).cancelled);
+}
+
+}  // namespace
+}  // namespace penumbra
