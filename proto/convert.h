@@ -24,6 +24,7 @@ v1::MixSummary to_proto(const MixSummary& mix);
 v1::TileRow to_proto(const TileRow& row);
 v1::RunSummary to_proto(const RunSummary& summary);
 v1::LeaseId to_proto(const LeaseId& lease);
+v1::SyncRequest::Loaded to_proto(const LoadedScene& scene);
 v1::SyncRequest to_proto(const WorkerState& state);
 v1::SyncResponse to_proto(const DesiredState& state);
 

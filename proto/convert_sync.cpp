@@ -96,16 +96,19 @@ static void add_reports(const WorkerState& state, v1::SyncRequest& out) {
     added->set_reason(to_proto(task.reason));
     added->set_message(task.message);
   }
-  for (const LoadedScene& scene : state.loaded) {
-    v1::SyncRequest::Loaded* added = out.add_loaded();
-    added->set_job(scene.job);
-    *added->mutable_report() = to_proto(scene.report);
-    for (const Substitution& substitution : scene.substitutions) {
-      v1::SyncRequest::Loaded::Substitution* text = added->add_substitutions();
-      text->set_mix(substitution.mix);
-      text->set_text(substitution.text);
-    }
+  for (const LoadedScene& scene : state.loaded) *out.add_loaded() = to_proto(scene);
+}
+
+v1::SyncRequest::Loaded to_proto(const LoadedScene& scene) {
+  v1::SyncRequest::Loaded out;
+  out.set_job(scene.job);
+  *out.mutable_report() = to_proto(scene.report);
+  for (const Substitution& substitution : scene.substitutions) {
+    v1::SyncRequest::Loaded::Substitution* added = out.add_substitutions();
+    added->set_mix(substitution.mix);
+    added->set_text(substitution.text);
   }
+  return out;
 }
 
 v1::SyncRequest to_proto(const WorkerState& state) {

@@ -1,0 +1,84 @@
+#include "server/assembler.h"
+
+#include <algorithm>
+
+#include "film/frame.h"
+#include "proto/status.h"
+
+namespace penumbra {
+namespace {
+
+// film/frame.h keeps two means of three doubles, two counts and a cost per pixel.
+constexpr uint64_t kBytesPerPixel = (3 + 3 + 1) * sizeof(double) + 2 * sizeof(int64_t);
+
+struct MixBatch {
+  int first, count;
+};
+
+bool whole_range(const Assembly& job, size_t range) {
+  const auto begin = job.results.begin() + static_cast<ptrdiff_t>(range * job.tiles.size());
+  return std::none_of(begin, begin + static_cast<ptrdiff_t>(job.tiles.size()),
+                      [](const Digest& digest) { return digest.empty(); });
+}
+
+absl::Status merge_range(const Assembly& job, const BlobFolder& blobs, size_t range, MixBatch batch,
+                         std::vector<Frame>& frames) {
+  for (size_t t = 0; t < job.tiles.size(); ++t) {
+    const Digest& digest = job.results[range * job.tiles.size() + t];
+    if (digest.empty()) continue;
+    ASSIGN_OR_RETURN(const std::string bytes, blobs.read(digest));
+    ASSIGN_OR_RETURN(const TileResult result, parse_tile_result(bytes));
+    if (result.mixes.size() != job.spec.mixes.size())
+      return make_status(absl::StatusCode::kDataLoss, "result {}: {} mixes", digest, result.mixes.size());
+    for (int i = 0; i < batch.count; ++i) merge(frames[i], result.mixes[batch.first + i]);
+  }
+  return absl::OkStatus();
+}
+
+absl::Status deliver_frames(const std::vector<Frame>& frames, MixBatch batch, int checkpoint, bool final,
+                            const DeliverFrame& deliver) {
+  for (int i = 0; i < batch.count; ++i)
+    RETURN_IF_ERROR(deliver({batch.first + i, checkpoint, final, resolve(frames[i])}));
+  return absl::OkStatus();
+}
+
+absl::Status assemble_batch(const Assembly& job, const BlobFolder& blobs, bool checkpoints, MixBatch batch,
+                            const DeliverFrame& deliver) {
+  std::vector<Frame> frames(batch.count, Frame(job.spec.width, job.spec.height, job.spec.crop));
+  const size_t ranges = job.plan ? job.plan->boundaries.size() : 0;
+  bool whole = true;
+  int checkpoint = -1;
+  for (size_t range = 0; range < ranges; ++range) {
+    RETURN_IF_ERROR(merge_range(job, blobs, range, batch, frames));
+    whole = whole && whole_range(job, range);
+    if (!whole || !job.plan->boundaries[range].checkpoint) continue;
+    ++checkpoint;
+    if (checkpoints && range + 1 < ranges)
+      RETURN_IF_ERROR(deliver_frames(frames, batch, checkpoint, false, deliver));
+  }
+  const bool finished = ranges > 0 && whole;
+  return deliver_frames(frames, batch, finished ? checkpoint : -1, true, deliver);
+}
+
+}  // namespace
+
+Assembly assembly_of(const JobRecord& job) {
+  Assembly out{job.spec(), job.tiles(), job.plan(), {}};
+  for (uint64_t id = job.first_run_id(); id < job.results().size(); ++id)
+    out.results.push_back(job.results()[id] ? job.results()[id]->result : Digest());
+  return out;
+}
+
+absl::Status assemble(const Assembly& job, const BlobFolder& blobs, bool checkpoints, uint64_t memory,
+                      const DeliverFrame& deliver) {
+  const uint64_t per_mix = static_cast<uint64_t>(job.spec.crop.area()) * kBytesPerPixel;
+  const auto mixes = static_cast<int>(job.spec.mixes.size());
+  const auto together = static_cast<int>(std::clamp<uint64_t>(memory / per_mix, 1, mixes));
+  for (int first = 0; first < mixes; first += together) {
+    const MixBatch batch{first, std::min(together, mixes - first)};
+    RETURN_IF_ERROR(assemble_batch(job, blobs, checkpoints, batch, deliver));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace penumbra

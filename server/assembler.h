@@ -1,0 +1,41 @@
+#pragma once
+// Merges tile results into frames, always in the order of task ids: the frames' bits depend on which
+// results there are, never on when they came or who made them.
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "film/film_image.h"
+#include "film/tile_pixels.h"
+#include "proto/blob_folder.h"
+#include "server/job_record.h"
+
+namespace penumbra {
+
+/// What is needed of a job, copied so that assembling does not hold up the scheduler.
+struct Assembly {
+  JobSpec spec;
+  std::vector<PixelRect> tiles;
+  std::optional<Plan> plan;
+  std::vector<Digest> results;  ///< of the run tasks, in order of ids; empty: not accepted yet
+};
+Assembly assembly_of(const JobRecord& job);
+
+/// The cumulative frame of one mix.
+struct AssembledFrame {
+  int mix = 0;
+  int checkpoint = 0;  ///< place among the plan's checkpoints; -1 for the last frame of an unfinished job
+  bool final = false;  ///< holds everything that was accepted
+  FilmImage image;
+};
+
+using DeliverFrame = std::function<absl::Status(const AssembledFrame&)>;
+
+/// Delivers each mix's final frame and, if asked for, before it the frames at the checkpoints that every
+/// tile has reached. Mixes are assembled together as far as their frames fit into `memory` bytes (at least
+/// one); results are read once per such batch. Stops at the first error of `deliver`, or of a blob.
+absl::Status assemble(const Assembly& job, const BlobFolder& blobs, bool checkpoints, uint64_t memory,
+                      const DeliverFrame& deliver);
+
+}  // namespace penumbra

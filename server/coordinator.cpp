@@ -1,0 +1,179 @@
+#include "server/coordinator.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "proto/status.h"
+
+namespace penumbra {
+namespace {
+
+// Longest that a Sync waits: well below the silence after which its worker would be given up.
+constexpr double kMostWaitSeconds = 5;
+// The loop wakes at least this often, so that a deadline is never missed by more.
+constexpr double kMostSleepSeconds = 1;
+
+}  // namespace
+
+Coordinator::Coordinator(std::unique_ptr<JobStore> store, BlobFolder blobs, SchedulerLimits limits,
+                         Clock clock)
+    : store_(std::move(store)), blobs_(std::move(blobs)), clock_(std::move(clock)), scheduler_(limits) {}
+
+Coordinator::~Coordinator() {
+  stop();
+}
+
+absl::Status Coordinator::start() {
+  ASSIGN_OR_RETURN(const StoredState stored, store_->load());
+  RETURN_IF_ERROR(scheduler_.restore(stored, clock_()));
+  RETURN_IF_ERROR(commit());
+  thread_ = std::thread([this] { run(); });
+  return absl::OkStatus();
+}
+
+void Coordinator::stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  posted_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+void Coordinator::post(Work work, std::function<void()> refuse) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!stopping_ && !failed_) {
+      inbox_.push_back({std::move(work), std::move(refuse)});
+      posted_.notify_one();
+      return;
+    }
+  }
+  refuse();
+}
+
+uint64_t Coordinator::sync(WorkerState state, std::vector<absl::StatusOr<ResultShape>> shapes,
+                           SyncReply reply) {
+  const uint64_t ticket = next_ticket_++;
+  auto work = [this, ticket, state = std::move(state), shapes = std::move(shapes), reply](
+                  Scheduler& scheduler, const Now& now) mutable -> Finish {
+    if (const absl::Status status = scheduler.report(state, shapes, now); !status.ok())
+      return [reply, status](const absl::Status&) { reply(status); };
+    // Answered with the others, after all of this batch's reports are in.
+    const double wait = std::min(state.wait_milliseconds * 1e-3, kMostWaitSeconds);
+    waiting_.push_back({ticket, std::move(state), now.steady + wait, reply});
+    return nullptr;
+  };
+  post(std::move(work), [reply] { reply(absl::UnavailableError("the server is stopping")); });
+  return ticket;
+}
+
+void Coordinator::cancel_sync(uint64_t ticket) {
+  post(
+      [this, ticket](Scheduler&, const Now&) -> Finish {
+        const auto it = std::find_if(waiting_.begin(), waiting_.end(),
+                                     [&](const Waiting& w) { return w.ticket == ticket; });
+        if (it == waiting_.end()) return nullptr;
+        SyncReply reply = std::move(it->reply);
+        waiting_.erase(it);
+        return [reply](const absl::Status&) { reply(absl::CancelledError("the worker has hung up")); };
+      },
+      [] {});
+}
+
+uint64_t Coordinator::wait_for_change(uint64_t revision, double seconds) {
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, std::chrono::duration<double>(seconds),
+                    [&] { return published_revision_ != revision || stopping_; });
+  return published_revision_;
+}
+
+double Coordinator::next_deadline() const {
+  const Now now = clock_();
+  double next = now.steady + kMostSleepSeconds;
+  for (const Waiting& waiting : waiting_) next = std::min(next, waiting.deadline);
+  if (const auto expiry = scheduler_.next_expiry()) next = std::min(next, *expiry);
+  return std::max(0.0, next - now.steady);
+}
+
+std::vector<Coordinator::Posted> Coordinator::next_batch() {
+  const std::chrono::duration<double> sleep(next_deadline());
+  std::unique_lock lock(mutex_);
+  posted_.wait_for(lock, sleep, [&] { return !inbox_.empty() || stopping_; });
+  return std::exchange(inbox_, {});
+}
+
+/// Answers every Sync that has something to hear or has waited long enough (or all of them).
+void Coordinator::answer_waiting(const Now& now, std::vector<Finish>& finished, bool all) {
+  const bool news = scheduler_.revision() != answered_revision_;
+  for (auto it = waiting_.begin(); it != waiting_.end();) {
+    const bool over = all || now.steady >= it->deadline;
+    if (!news && !over && !std::exchange(it->fresh, false)) {
+      ++it;
+      continue;
+    }
+    SyncAnswer answer = scheduler_.answer(it->state, now);
+    if (!answer.urgent && !over) {
+      ++it;
+      continue;
+    }
+    finished.push_back([reply = std::move(it->reply),
+                        desired = std::move(answer.desired)](const absl::Status& durable) mutable {
+      if (durable.ok())
+        reply(std::move(desired));
+      else
+        reply(durable);
+    });
+    it = waiting_.erase(it);
+  }
+  answered_revision_ = scheduler_.revision();
+}
+
+/// Results' bytes first: a row must never name a blob that a power cut could take away.
+absl::Status Coordinator::commit() {
+  const std::vector<Change> changes = scheduler_.take_changes();
+  if (changes.empty()) return absl::OkStatus();
+  std::vector<Digest> results;
+  for (const Change& change : changes)
+    if (const auto* put = std::get_if<PutResult>(&change); put != nullptr && !put->result.empty())
+      results.push_back(put->result);
+  RETURN_IF_ERROR(blobs_.sync(results));
+  return store_->apply(changes);
+}
+
+void Coordinator::run() {
+  for (bool stopping = false; !stopping && !failed_;) {
+    const std::vector<Posted> batch = next_batch();
+    {
+      const std::lock_guard lock(mutex_);
+      stopping = stopping_;
+    }
+    const Now now = clock_();
+    std::vector<Finish> finished;
+    for (const Posted& posted : batch)
+      if (Finish finish = posted.work(scheduler_, now)) finished.push_back(std::move(finish));
+    scheduler_.expire(now);
+    answer_waiting(now, finished, stopping);
+    absl::Status durable = commit();
+    if (!durable.ok()) {
+      spdlog::critical("the job store failed, the server ends: {}", message_of(durable));
+      failed_ = true;
+      durable = absl::UnavailableError("the server's store has failed");
+      answer_waiting(now, finished, true);
+    }
+    for (const Finish& finish : finished) finish(durable);
+    const std::lock_guard lock(mutex_);
+    published_revision_ = scheduler_.revision();
+    changed_.notify_all();
+  }
+  std::vector<Posted> late;
+  {
+    const std::lock_guard lock(mutex_);
+    late = std::exchange(inbox_, {});
+  }
+  for (const Posted& posted : late) posted.refuse();
+}
+
+}  // namespace penumbra

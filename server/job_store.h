@@ -1,0 +1,19 @@
+#pragma once
+// Where jobs, leases and accepted results survive. Pixels never come here: they are blobs.
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "server/changes.h"
+
+namespace penumbra {
+
+class JobStore {
+ public:
+  virtual ~JobStore() = default;
+  /// All changes or none, in order; durable when it returns. Called by one thread.
+  virtual absl::Status apply(const std::vector<Change>& changes) = 0;
+  virtual absl::StatusOr<StoredState> load() = 0;
+};
+
+}  // namespace penumbra
