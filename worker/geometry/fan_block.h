@@ -97,24 +97,20 @@ class FanBlock {
                     S::select(odd0, c[1].*member, c[0].*member), S::select(odd2, c[1].*member, c[2].*member)};
     };
     const Picked g = pick(&Corner::g), beta = pick(&Corner::beta), t = pick(&Corner::t);
-    const Crossing e1{cross(g.first, beta.odd, g.odd, beta.first), cross(g.first, t.odd, g.odd, t.first),
-                      S::add(g.first, g.odd)};
-    const Crossing e2{cross(g.second, beta.odd, g.odd, beta.second), cross(g.second, t.odd, g.odd, t.second),
-                      S::add(g.second, g.odd)};
-    const S::Floats near1 = S::mul(S::all(fan_.near), e1.w), near2 = S::mul(S::all(fan_.near), e2.w);
-    const S::Floats minus1 = S::mul(S::all(-fan_.near), e1.w), minus2 = S::mul(S::all(-fan_.near), e2.w);
-    const S::Mask behind = S::both(S::less(e1.t, minus1), S::less(e2.t, minus2));
-    const S::Mask beyond1 = S::less_equal(S::mul(S::all(fan_.light), e1.w), e1.t);
-    const S::Mask beyond2 = S::less_equal(S::mul(S::all(fan_.light), e2.w), e2.t);
-    cut = S::without(S::without(cut, behind), S::both(beyond1, beyond2));
+    const Crossings e1 = cross(g.first, beta.first, t.first, g.odd, beta.odd, t.odd);
+    const Crossings e2 = cross(g.second, beta.second, t.second, g.odd, beta.odd, t.odd);
+    const Place at1 = place(e1), at2 = place(e2);
+    cut = S::without(S::without(cut, S::both(at1.behind, at2.behind)), S::both(at1.beyond, at2.beyond));
     if (excluded.count != 0) cut = S::without(cut, excluded_lanes(block, excluded));
-    const S::Mask ends =
-        S::either(S::either(S::less(e1.t, near1), S::less(e2.t, near2)), S::either(beyond1, beyond2));
-    if (const uint32_t careful = S::bits(S::both(cut, ends))) {
-      near_ends(block, careful, S::bits(odd1), S::bits(odd2), v0, v1, out);
-      cut = S::without(cut, ends);
+    S::Floats v1s = S::div(e1.beta, e1.t), v2s = S::div(e2.beta, e2.t);
+    const S::Mask clear = S::both(at1.clear, at2.clear);
+    if (S::bits(S::without(cut, clear)) != 0) {
+      const S::Mask decided = decide_behind(e1, at1, e2, at2, v1s, v2s);
+      const S::Mask left = S::without(S::without(cut, clear), decided);
+      near_ends(block, candidates(left, at1, at2, v1s, v2s, v0, v1), S::bits(odd1), S::bits(odd2), e1, e2, v0,
+                v1, out);
+      cut = S::without(cut, left);
     }
-    const S::Floats v1s = S::div(e1.beta, e1.t), v2s = S::div(e2.beta, e2.t);
     const S::Floats lo = S::max(S::min(v1s, v2s), S::all(v0)), hi = S::min(S::max(v1s, v2s), S::all(v1));
     cut = S::both(cut, S::less(lo, hi));
     if (S::bits(cut) == 0) return 0;
@@ -130,8 +126,12 @@ class FanBlock {
   struct Picked {
     S::Floats odd, first, second;
   };
-  struct Crossing {
+  struct Crossings {
     S::Floats beta, t, w;
+  };
+  /// Where the crossings lie along their rays: neither of these is close to x.
+  struct Place {
+    S::Mask front, behind, beyond, clear;  ///< clear: in front, not beyond
   };
 
   Corner corner(const float (&p)[3][kWidth]) const {
@@ -144,9 +144,45 @@ class FanBlock {
     return {S::abs(g), dot(fan_.beta), dot(fan_.t), S::less(g, S::all(0))};
   }
 
-  /// a b + c d without a fused multiply-add: the same whichever vertex comes first.
-  static S::Floats cross(S::Floats a, S::Floats b, S::Floats c, S::Floats d) {
-    return S::add(S::mul(a, b), S::mul(c, d));
+  /// Without a fused multiply-add: the same whichever vertex comes first.
+  static Crossings cross(S::Floats g, S::Floats beta, S::Floats t, S::Floats g2, S::Floats beta2,
+                         S::Floats t2) {
+    return {S::add(S::mul(g, beta2), S::mul(g2, beta)), S::add(S::mul(g, t2), S::mul(g2, t)), S::add(g, g2)};
+  }
+
+  Place place(const Crossings& e) const {
+    Place at;
+    at.front = S::less_equal(S::mul(S::all(fan_.near), e.w), e.t);
+    at.behind = S::less(e.t, S::mul(S::all(-fan_.near), e.w));
+    at.beyond = S::less_equal(S::mul(S::all(fan_.light), e.w), e.t);
+    at.clear = S::without(at.front, at.beyond);
+    return at;
+  }
+
+  /// Lanes with one end clearly in front and the other clearly behind: that end goes to ±∞.
+  S::Mask decide_behind(const Crossings& e1, const Place& at1, const Crossings& e2, const Place& at2,
+                        S::Floats& v1s, S::Floats& v2s) const {
+    const S::Floats turn = S::sub(S::mul(e2.beta, e1.t), S::mul(e1.beta, e2.t));
+    const S::Floats doubt = S::mul(S::all(fan_.error), S::add(S::add(S::abs(e1.t), S::abs(e2.t)),
+                                                              S::add(S::abs(e1.beta), S::abs(e2.beta))));
+    const S::Mask sure = S::less(doubt, S::abs(turn)), positive = S::less(S::all(0), turn);
+    const S::Mask behind1 = S::both(sure, S::both(at2.clear, at1.behind));
+    const S::Mask behind2 = S::both(sure, S::both(at1.clear, at2.behind));
+    const S::Floats up = S::all(std::numeric_limits<float>::infinity());
+    const S::Floats down = S::all(-std::numeric_limits<float>::infinity());
+    v1s = S::select(behind1, S::select(positive, down, up), v1s);
+    v2s = S::select(behind2, S::select(positive, up, down), v2s);
+    return S::either(behind1, behind2);
+  }
+
+  /// Of the lanes left for double precision, those that can matter: where both ends are in front, nothing
+  /// outside them is hidden.
+  static uint32_t candidates(S::Mask left, const Place& at1, const Place& at2, S::Floats v1s, S::Floats v2s,
+                             float v0, float v1) {
+    const S::Mask bounded = S::both(at1.front, at2.front);
+    const S::Mask meets =
+        S::both(S::less(S::min(v1s, v2s), S::all(v1)), S::less(S::all(v0), S::max(v1s, v2s)));
+    return S::bits(S::without(left, S::without(bounded, meets)));
   }
 
   static S::Mask excluded_lanes(const TriangleBlock& block, const Excluded& excluded) {
@@ -154,13 +190,19 @@ class FanBlock {
   }
 
   [[gnu::noinline]] void near_ends(const TriangleBlock& block, uint32_t lanes, uint32_t odd1, uint32_t odd2,
-                                   float v0, float v1, HiddenIntervals& out) const {
+                                   const Crossings& e1, const Crossings& e2, float v0, float v1,
+                                   HiddenIntervals& out) const {
+    if (lanes == 0) return;
+    alignas(64) float edges[6][kWidth];
+    const S::Floats values[6] = {e1.beta, e1.t, e1.w, e2.beta, e2.t, e2.w};
+    for (int i = 0; i < 6; ++i) S::store(edges[i], values[i]);
     for (; lanes != 0; lanes &= lanes - 1) {
       const int lane = std::countr_zero(lanes);
       Vec3f p[3];
       for (int c = 0; c < 3; ++c) p[c] = {block.p[c][0][lane], block.p[c][1][lane], block.p[c][2][lane]};
       const int odd = odd1 >> lane & 1 ? 1 : odd2 >> lane & 1 ? 2 : 0;
-      const Interval hidden = hidden_near_ends(fan_, p, odd);
+      const Interval hidden = hidden_near_ends(fan_, p, odd, {edges[0][lane], edges[1][lane], edges[2][lane]},
+                                               {edges[3][lane], edges[4][lane], edges[5][lane]});
       const Interval clamped{std::max(hidden.lo, v0), std::min(hidden.hi, v1)};
       if (clamped.lo < clamped.hi) out.add(clamped);
     }

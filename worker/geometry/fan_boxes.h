@@ -97,7 +97,7 @@ class FanBoxes {
     const float cj = -sign * e[m], cm = sign * e[j];
     const float slack = largest ? slack_ * length_ : -slack_ * length_;
     return Side{row(j, (cj > 0) == largest), row(m, (cm > 0) == largest), cj, cm,
-            slack - (cj * x_[j] + cm * x_[m])};
+                slack - (cj * x_[j] + cm * x_[m])};
   }
 
   S::Floats plane(const float (*rows)[kWidth], const int corner[3], float d) const {

@@ -20,18 +20,6 @@ float dot_fma(const Vec3f& c, const Vec3f& q) {
   return std::fma(c.z, q.z, std::fma(c.y, q.y, c.x * q.x));
 }
 
-/// Where an edge of a triangle crosses the plane, in homogeneous fan coordinates: β and t, both times
-/// w = |g_p| + |g_o|. Symmetric in the edge's vertices to the last bit: no fused multiply-add.
-template <class Real>
-struct Crossing {
-  Real beta, t, w;
-};
-
-template <class Real>
-Crossing<Real> crossing(Real g_p, Real beta_p, Real t_p, Real g_o, Real beta_o, Real t_o) {
-  return {g_p * beta_o + g_o * beta_p, g_p * t_o + g_o * t_p, g_p + g_o};
-}
-
 /// The single-precision coordinates of a triangle's vertices, |g| and its side apart.
 struct Corners {
   float g[3], beta[3], t[3];
@@ -47,8 +35,26 @@ struct Corners {
       t[i] = dot_fma(fan.t, q);
     }
   }
-  Crossing<float> cross(int i, int o) const { return crossing(g[i], beta[i], t[i], g[o], beta[o], t[o]); }
+  /// Symmetric in the edge's vertices to the last bit: no fused multiply-add.
+  Crossing cross(int i, int o) const {
+    return {g[i] * beta[o] + g[o] * beta[i], g[i] * t[o] + g[o] * t[i], g[i] + g[o]};
+  }
 };
+
+bool in_front(const LineFan& fan, const Crossing& e) {
+  return e.t >= fan.near * e.w;
+}
+bool behind(const LineFan& fan, const Crossing& e) {
+  return e.t < -fan.near * e.w;
+}
+bool beyond(const LineFan& fan, const Crossing& e) {
+  return e.t >= fan.light * e.w;
+}
+
+/// An interval's ends in any order, clamped to the chord.
+Interval ordered(float v1, float v2) {
+  return {std::max(std::min(v1, v2), 0.f), std::min(std::max(v1, v2), 1.f)};
+}
 
 /// One end of the hidden interval and where it lies along the rays.
 struct End {
@@ -57,15 +63,14 @@ struct End {
 };
 
 /// Decided from the edge's own numbers alone, so that both neighbours decide alike.
-End end_of(const LineFan& fan, const Corners& corners, const Vec3d q[3], int i, int o) {
-  const Crossing<float> c = corners.cross(i, o);
-  if (c.t >= fan.near * c.w) return {c.beta / c.t, false, c.t >= fan.light * c.w};
-  if (c.t < -fan.near * c.w) return {0, true, false};
-  const auto exact =
-      crossing(std::abs(fan.g_exact.dot(q[i])), fan.beta_exact.dot(q[i]), fan.t_exact.dot(q[i]),
-               std::abs(fan.g_exact.dot(q[o])), fan.beta_exact.dot(q[o]), fan.t_exact.dot(q[o]));
-  if (!(exact.t > 0)) return {0, true, false};
-  return {static_cast<float>(exact.beta / exact.t), false, c.t >= fan.light * c.w};
+End end_of(const LineFan& fan, const Crossing& e, const Vec3d& q, const Vec3d& q_odd) {
+  if (in_front(fan, e)) return {e.beta / e.t, false, beyond(fan, e)};
+  if (behind(fan, e)) return {0, true, false};
+  const double g = std::abs(fan.g_exact.dot(q)), g_odd = std::abs(fan.g_exact.dot(q_odd));
+  const double t = g * fan.t_exact.dot(q_odd) + g_odd * fan.t_exact.dot(q);
+  if (!(t > 0)) return {0, true, false};
+  const double beta = g * fan.beta_exact.dot(q_odd) + g_odd * fan.beta_exact.dot(q);
+  return {static_cast<float>(beta / t), false, beyond(fan, e)};
 }
 
 }  // namespace
@@ -102,6 +107,12 @@ LineFan make_fan(const Vec3d& x, const Vec3d& a, const Vec3d& b, double reach) {
   // whole chord (a floor just below x, parallel to the chord, is the common case). Below 2^10 error bounds
   // the edge is evaluated in double; above, v is wrong by at most 2^-10 of an interval end near x.
   fan.near = static_cast<float>(0x1p10 * error_per_length * reach);
+  // β and t of a crossing are |g| β + |g'| β' and the like: each factor is off by 5 u |n|₁ reach and
+  // 5 u |β|₁ reach at most, over factors of at most |β|₁ reach and |n|₁ reach, four products in all.
+  const double norms = std::max(std::abs(beta.x) + std::abs(beta.y) + std::abs(beta.z),
+                                std::abs(t.x) + std::abs(t.y) + std::abs(t.z)) *
+                       (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
+  fan.error = static_cast<float>(20 * kFloatRoundoff * norms * reach * reach);
   // Where a triangle's cut is computed to lie is off by its functionals' errors over their size: relative to
   // `reach`, a few u / sin(x's angle with the chord), and light / (|t| |a|) is at most that sine's size.
   fan.slack = 64 * kFloatRoundoff * reach * std::max(1., largest(t) * farther_end / light);
@@ -109,45 +120,57 @@ LineFan make_fan(const Vec3d& x, const Vec3d& a, const Vec3d& b, double reach) {
   return fan;
 }
 
-Interval hidden_near_ends(const LineFan& fan, const Vec3f p[3], int odd) {
-  const Corners corners(fan, p);
-  const int i1 = odd == 0 ? 1 : 0, i2 = odd == 2 ? 1 : 2;
+Interval hidden_near_ends(const LineFan& fan, const Vec3f p[3], int odd, const Crossing& e1,
+                          const Crossing& e2) {
   Vec3d q[3];
   for (int i = 0; i < 3; ++i) q[i] = Vec3d(p[i]) - fan.x_exact;
-  End e1 = end_of(fan, corners, q, i1, odd), e2 = end_of(fan, corners, q, i2, odd);
-  if ((e1.behind && e2.behind) || (e1.beyond && e2.beyond)) return kHidesNothing;
-  if (e1.behind || e2.behind || e1.beyond || e2.beyond) {
-    const Vec3d normal = (q[1] - q[0]).cross(q[2] - q[0]);
-    const double h = normal.dot(q[0]), n_a = normal.dot(fan.a), n_b = normal.dot(fan.b);
-    for (End* e : {&e1, &e2}) {
-      if (e->behind) {
-        // In the fan's plane the triangle's plane is the line s n_a + r n_b = h; where it passes x's height
-        // (t = s+r = 0) it has r = h / (n_b - n_a). The cut runs off to v = ±∞ on that side.
-        const double r = h * (n_b - n_a);
-        if (r == 0) return kHidesNothing;  // the triangle's plane holds x
-        e->v = std::copysign(std::numeric_limits<float>::infinity(), static_cast<float>(r > 0 ? 1 : -1));
-      } else if (e->beyond) {
-        // The cut meets the light's line (t = 1: s = 1-v, r = v) where n_a + v (n_b - n_a) = h.
-        e->v = static_cast<float>((h - n_a) / (n_b - n_a));
-        if (std::isnan(e->v)) return kHidesNothing;  // parallel to the light's line, and in it
-      }
+  // The fan on one side of the triangle's plane: a surface just below x, as every x has one.
+  const Vec3d normal = (q[1] - q[0]).cross(q[2] - q[0]);
+  const double h = normal.dot(q[0]), a = normal.dot(fan.a) - h, b = normal.dot(fan.b) - h;
+  if ((h < 0 && a > 0 && b > 0) || (h > 0 && a < 0 && b < 0)) return kHidesNothing;
+  End ends[2] = {end_of(fan, e1, q[odd == 0 ? 1 : 0], q[odd]), end_of(fan, e2, q[odd == 2 ? 1 : 2], q[odd])};
+  if ((ends[0].behind && ends[1].behind) || (ends[0].beyond && ends[1].beyond)) return kHidesNothing;
+  for (int i = 0; i < 2; ++i) {
+    End& end = ends[i];
+    if (end.behind) {
+      // In the fan's plane the triangle's plane is the line s n·A + r n·B = h; where it passes x's height
+      // (t = s+r = 0) it has r = h / (n·B - n·A). The cut runs off to v = ±∞ on that side.
+      const double r = h * (b - a);
+      if (r == 0) return kHidesNothing;  // the triangle's plane holds x
+      end.v = std::copysign(std::numeric_limits<float>::infinity(), static_cast<float>(r > 0 ? 1 : -1));
+    } else if (end.beyond) {
+      // The cut meets the light's line (t = 1: s = 1-v, r = v) where n·A + v (n·B - n·A) = h; between its
+      // own ends, whatever rounding says, unless the other end is behind x.
+      const auto v = static_cast<float>(a / (a - b));
+      const End& other = ends[1 - i];
+      if (!(a != b)) return kHidesNothing;  // parallel to the light's line, and in it
+      end.v = other.behind ? v : std::clamp(v, std::min(end.v, other.v), std::max(end.v, other.v));
     }
   }
-  return ordered(e1.v, e2.v);
+  return ordered(ends[0].v, ends[1].v);
 }
 
 Interval hidden_by_triangle(const LineFan& fan, const Vec3f p[3]) {
   const Corners corners(fan, p);
-  const bool o1 = corners.below[0] != corners.below[1], o2 = corners.below[0] != corners.below[2];
-  if (!o1 && !o2) return kHidesNothing;
-  const int odd = o1 && o2 ? 0 : o1 ? 1 : 2;
-  const Crossing<float> c1 = corners.cross(odd == 0 ? 1 : 0, odd), c2 = corners.cross(odd == 2 ? 1 : 2, odd);
-  const float near1 = fan.near * c1.w, near2 = fan.near * c2.w;
-  if (c1.t < -near1 && c2.t < -near2) return kHidesNothing;
-  const bool beyond1 = c1.t >= fan.light * c1.w, beyond2 = c2.t >= fan.light * c2.w;
-  if (beyond1 && beyond2) return kHidesNothing;
-  if (c1.t < near1 || c2.t < near2 || beyond1 || beyond2) return hidden_near_ends(fan, p, odd);
-  return ordered(c1.beta / c1.t, c2.beta / c2.t);
+  const bool differs1 = corners.below[0] != corners.below[1], differs2 = corners.below[0] != corners.below[2];
+  if (!differs1 && !differs2) return kHidesNothing;
+  const int odd = differs1 && differs2 ? 0 : differs1 ? 1 : 2;
+  const Crossing e1 = corners.cross(odd == 0 ? 1 : 0, odd), e2 = corners.cross(odd == 2 ? 1 : 2, odd);
+  if ((behind(fan, e1) && behind(fan, e2)) || (beyond(fan, e1) && beyond(fan, e2))) return kHidesNothing;
+  const bool front1 = in_front(fan, e1) && !beyond(fan, e1), front2 = in_front(fan, e2) && !beyond(fan, e2);
+  if (front1 && front2) return ordered(e1.beta / e1.t, e2.beta / e2.t);
+  if ((front1 && behind(fan, e2)) || (front2 && behind(fan, e1))) {
+    // The cut passes x at β = (β2 t1 - β1 t2) / (t1 - t2) on its way back: to v = ±∞ by the sign, if that
+    // stands out from the errors.
+    const float turn = e2.beta * e1.t - e1.beta * e2.t;
+    const float doubt =
+        fan.error * ((std::abs(e1.t) + std::abs(e2.t)) + (std::abs(e1.beta) + std::abs(e2.beta)));
+    if (std::abs(turn) > doubt) {
+      const float end = std::copysign(std::numeric_limits<float>::infinity(), front1 ? turn : -turn);
+      return ordered(front1 ? e1.beta / e1.t : e2.beta / e2.t, end);
+    }
+  }
+  return hidden_near_ends(fan, p, odd, e1, e2);
 }
 
 }  // namespace penumbra
