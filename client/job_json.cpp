@@ -1,0 +1,102 @@
+#include "client/job_json.h"
+
+#include <variant>
+
+#include "client/parse_text.h"
+#include "film/film_image.h"
+#include "proto/status.h"
+
+namespace penumbra {
+namespace {
+
+template <class... Ts>
+struct Overload : Ts... {
+  using Ts::operator()...;
+};
+
+PixelRect rect_of(const Json& json) {
+  return {json.at(0).get<int>(), json.at(1).get<int>(), json.at(2).get<int>(), json.at(3).get<int>()};
+}
+
+/// May throw what nlohmann::json throws for a missing key or a wrong type.
+absl::StatusOr<JobSpec> read(const Json& json) {
+  JobSpec spec;
+  spec.scene = json.at("scene").get<std::string>();
+  spec.bundle = json.at("bundle").get<std::string>();
+  for (const Json& text : json.at("mixes")) {
+    ASSIGN_OR_RETURN(Mix mix, parse_mix(text.get<std::string>()));
+    spec.mixes.push_back(std::move(mix));
+  }
+  const Json& budget = json.at("budget");
+  if (budget.contains("cpu_seconds"))
+    spec.budget = CpuSecondsBudget{budget["cpu_seconds"].get<double>()};
+  else if (budget.contains("spp"))
+    spec.budget = SppBudget{budget["spp"].get<int64_t>()};
+  else
+    spec.budget = TargetErrorBudget{budget.at("target_error").get<double>()};
+  ASSIGN_OR_RETURN(spec.sampler, parse_sampler("sampler", json.at("sampler").get<std::string>()));
+  spec.width = json.at("width").get<int>();
+  spec.height = json.at("height").get<int>();
+  spec.crop = rect_of(json.at("crop"));
+  spec.max_depth = json.at("max_depth").get<int>();
+  spec.tile = json.at("tile").get<int>();
+  spec.seed = json.at("seed").get<uint64_t>();
+  spec.strict = json.at("strict").get<bool>();
+  spec.plan = json.at("plan").get<std::vector<int64_t>>();
+  spec.reference = json.at("reference").get<std::string>();
+  for (const auto& [name, rect] : json.at("regions").items()) spec.regions.push_back({name, rect_of(rect)});
+  if (spec.width < 1 || spec.height < 1 || spec.crop.area() <= 0 ||
+      !contains({0, 0, spec.width, spec.height}, spec.crop))
+    return invalid_input("spec: the crop does not lie in {}x{}", spec.width, spec.height);
+  return spec;
+}
+
+}  // namespace
+
+Json to_json(const PixelRect& r) {
+  return Json::array({r.x0, r.y0, r.x1, r.y1});
+}
+
+Json to_json(const Budget& budget) {
+  return std::visit(Overload{[](const CpuSecondsBudget& b) {
+                               return Json{{"cpu_seconds", b.seconds}};
+                             },
+                             [](const SppBudget& b) {
+                               return Json{{"spp", b.passes}};
+                             },
+                             [](const TargetErrorBudget& b) {
+                               return Json{{"target_error", b.relmse}};
+                             }},
+                    budget);
+}
+
+Json to_json(const JobSpec& spec) {
+  Json mixes = Json::array(), regions = Json::object();
+  for (const Mix& mix : spec.mixes) mixes.push_back(label(mix));
+  for (const Region& region : spec.regions) regions[region.name] = to_json(region.rect);
+  return {{"scene", spec.scene},
+          {"bundle", spec.bundle},
+          {"mixes", mixes},
+          {"budget", to_json(spec.budget)},
+          {"sampler", name_of(spec.sampler)},
+          {"width", spec.width},
+          {"height", spec.height},
+          {"crop", to_json(spec.crop)},
+          {"max_depth", spec.max_depth},
+          {"tile", spec.tile},
+          {"seed", spec.seed},
+          {"strict", spec.strict},
+          {"plan", spec.plan},
+          {"reference", spec.reference},
+          {"regions", regions}};
+}
+
+absl::StatusOr<JobSpec> job_from_json(const Json& json) {
+  try {
+    return read(json);
+  } catch (const Json::exception& fault) {
+    return invalid_input("spec: {}", fault.what());
+  }
+}
+
+}  // namespace penumbra

@@ -1,0 +1,179 @@
+#include "client/options.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <set>
+
+#include "proto/status.h"
+
+namespace penumbra {
+namespace {
+
+constexpr int64_t kMostWorkers = 1024;
+constexpr int64_t kMostPasses = int64_t{1} << 40;
+constexpr int64_t kDeepest = 1 << 16;
+constexpr int64_t kLargestTile = 4096;
+
+/// What is rendered where neither the command line nor the scene says: the two classic strategies.
+constexpr const char* kDefaultMix = "bsdf:1+sa:1/balance";
+
+absl::StatusOr<std::vector<Mix>> mixes_of(const JobOptions& options, const SceneDefaults& scene) {
+  std::vector<Mix> mixes;
+  for (const std::string& text : options.mixes) {
+    ASSIGN_OR_RETURN(Mix mix, parse_mix(text));
+    if (mix.automatic) return invalid_input("--mix: 'auto' comes with a later version; name a mix");
+    mixes.push_back(std::move(mix));
+  }
+  if (mixes.empty() && scene.mix) mixes.push_back(*scene.mix);
+  if (mixes.empty()) {
+    ASSIGN_OR_RETURN(Mix mix, parse_mix(kDefaultMix));
+    mixes.push_back(std::move(mix));
+  }
+  return mixes;
+}
+
+absl::StatusOr<Budget> budget_of(const JobOptions& options, const SceneDefaults& scene) {
+  const auto given = !options.budget.empty() + !options.passes.empty() + !options.target_error.empty();
+  if (given > 1) return invalid_input("--budget, --spp and --target-error exclude one another");
+  if (!options.budget.empty()) {
+    ASSIGN_OR_RETURN(const double seconds, parse_duration("--budget", options.budget));
+    return CpuSecondsBudget{seconds};
+  }
+  if (!options.passes.empty()) {
+    ASSIGN_OR_RETURN(const int64_t passes, parse_whole("--spp", options.passes, 1, kMostPasses));
+    return SppBudget{passes};
+  }
+  if (!options.target_error.empty()) {
+    ASSIGN_OR_RETURN(const double error, parse_positive("--target-error", options.target_error));
+    return TargetErrorBudget{error};
+  }
+  return SppBudget{scene.passes};
+}
+
+absl::Status set_image(const JobOptions& options, const SceneDefaults& scene, JobSpec& job) {
+  job.width = scene.width;
+  job.height = scene.height;
+  if (!options.resolution.empty()) {
+    ASSIGN_OR_RETURN(const Resolution resolution, parse_resolution("--resolution", options.resolution));
+    job.width = resolution.width;
+    job.height = resolution.height;
+  }
+  const PixelRect full{0, 0, job.width, job.height};
+  if (options.crop.empty()) {
+    ASSIGN_OR_RETURN(job.crop, scene.crop(job.width, job.height));
+  } else {
+    ASSIGN_OR_RETURN(job.crop, parse_rect("--crop", options.crop));
+    if (!contains(full, job.crop))
+      return invalid_input("--crop: {} does not lie in {}x{}", options.crop, job.width, job.height);
+  }
+  std::set<std::string> names;
+  for (const std::string& text : options.regions) {
+    ASSIGN_OR_RETURN(Region region, parse_region("--region", text));
+    if (!contains(job.crop, region.rect))
+      return invalid_input("--region: '{}' does not lie in the rendered {},{},{},{}", text, job.crop.x0,
+                           job.crop.y0, job.crop.x1, job.crop.y1);
+    if (!names.insert(region.name).second) return invalid_input("--region: '{}' is named twice", region.name);
+    job.regions.push_back(std::move(region));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+void add_server_options(CLI::App& app, ServerOptions& o, bool from_environment) {
+  CLI::Option* server = app.add_option("--server", o.address, "The server")->type_name("HOST:PORT");
+  if (from_environment) server->envname("PENUMBRA_SERVER");
+  app.add_option("--tls-cert", o.credentials.cert, "Client certificate (PEM)")->type_name("FILE");
+  app.add_option("--tls-key", o.credentials.key, "Its private key (PEM)")->type_name("FILE");
+  app.add_option("--tls-ca", o.credentials.ca, "Authority that signed the server's certificate (PEM)")
+      ->type_name("FILE");
+  app.add_option("--token-file", o.credentials.token_file, "File with a bearer token")->type_name("FILE");
+}
+
+void add_cluster_options(CLI::App& app, ClusterOptions& o) {
+  app.add_option("--workers", o.workers, "Worker processes of the local cluster (default 2)")->type_name("N");
+  app.add_option("--threads", o.threads, "Threads of each (default: cores / workers)")->type_name("N");
+}
+
+absl::StatusOr<ClusterSize> cluster_size(const ClusterOptions& o, int cores) {
+  ClusterSize size;
+  if (!o.workers.empty()) {
+    ASSIGN_OR_RETURN(const int64_t workers, parse_whole("--workers", o.workers, 1, kMostWorkers));
+    size.workers = static_cast<int>(workers);
+  }
+  size.threads = std::max(1, cores / size.workers);
+  if (!o.threads.empty()) {
+    ASSIGN_OR_RETURN(const int64_t threads, parse_whole("--threads", o.threads, 1, kMostWorkers));
+    size.threads = static_cast<int>(threads);
+  }
+  return size;
+}
+
+void add_job_options(CLI::App& app, JobOptions& o) {
+  app.add_option("scene", o.scene, "Scene file (pbrt-v3 or v4)")->required()->type_name("SCENE.pbrt");
+  app.add_option(
+         "--mix", o.mixes,
+         "strategy[:count] joined by +, then /combination; repeatable. "
+         "Strategies: bsdf area sa line-area@DEG line-sa@u line-sa@v. Combinations: /balance (default) "
+         "/average. Default: the scene's Integrator \"pointline\", else bsdf:1+sa:1/balance")
+      ->type_name("MIX")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option("--budget", o.budget, "CPU seconds per mix: 500ms, 30s, 2m")->type_name("DURATION");
+  app.add_option("--spp", o.passes, "Camera samples per pixel")->type_name("N");
+  app.add_option("--target-error", o.target_error, "Until relMSE is estimated below E")->type_name("E");
+  app.add_option("--sampler", o.sampler, "independent, stratified (default) or sobol")->type_name("KIND");
+  app.add_option("--reference", o.reference, "Reference image: error columns")->type_name("REF.exr");
+  app.add_option("--region", o.regions, "NAME=X0,Y0,X1,Y1 in pixels, half-open; repeatable")
+      ->type_name("REGION")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option("--resolution", o.resolution, "Instead of the scene's")->type_name("WxH");
+  app.add_option("--crop", o.crop, "Render only these pixels, half-open")->type_name("X0,Y0,X1,Y1");
+  app.add_option("--max-depth", o.max_depth, "Vertices with direct light; above 1 along specular chains")
+      ->type_name("N");
+  app.add_option("--tile", o.tile, "Edge of a tile, pixels (default 64)")->type_name("N");
+  app.add_option("--seed", o.seed, "Random seed (default 0)")->type_name("N");
+  app.add_flag("--strict", o.strict, "Warnings about the scene are errors");
+}
+
+absl::StatusOr<JobSpec> make_job(const JobOptions& o, const SceneDefaults& scene) {
+  JobSpec job;
+  job.scene = std::filesystem::absolute(o.scene).lexically_normal();
+  job.strict = o.strict;
+  ASSIGN_OR_RETURN(job.mixes, mixes_of(o, scene));
+  ASSIGN_OR_RETURN(job.budget, budget_of(o, scene));
+  RETURN_IF_ERROR(set_image(o, scene, job));
+  if (!o.sampler.empty()) {
+    ASSIGN_OR_RETURN(job.sampler, parse_sampler("--sampler", o.sampler));
+  }
+  job.max_depth = scene.max_depth;
+  if (!o.max_depth.empty()) {
+    ASSIGN_OR_RETURN(const int64_t depth, parse_whole("--max-depth", o.max_depth, 1, kDeepest));
+    job.max_depth = static_cast<int>(depth);
+  }
+  if (!o.tile.empty()) {
+    ASSIGN_OR_RETURN(const int64_t tile, parse_whole("--tile", o.tile, 1, kLargestTile));
+    job.tile = static_cast<int>(tile);
+  }
+  if (!o.seed.empty()) {
+    ASSIGN_OR_RETURN(job.seed, parse_seed("--seed", o.seed));
+  }
+  if (!o.reference.empty()) job.reference = std::filesystem::absolute(o.reference).lexically_normal();
+  return job;
+}
+
+void add_output_options(CLI::App& app, OutputOptions& o) {
+  app.add_option("--out", o.out,
+                 "Folder for the images, run.json, report.html (default ./penumbra-out/<scene>)")
+      ->type_name("DIR");
+  app.add_flag("--json", o.json, "Standard output is exactly run.json");
+  app.add_flag("--quiet", o.quiet, "Nothing but errors");
+}
+
+std::string default_folder(const std::string& scene) {
+  return std::filesystem::path("penumbra-out") / std::filesystem::path(scene).stem();
+}
+
+}  // namespace penumbra

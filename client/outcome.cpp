@@ -1,0 +1,161 @@
+#include "client/outcome.h"
+
+#include <filesystem>
+#include <set>
+
+#include "client/report.h"
+#include "film/atomic_file.h"
+#include "film/exr.h"
+#include "proto/status.h"
+
+namespace penumbra {
+namespace {
+
+namespace fs = std::filesystem;
+
+absl::Status make_folder(const std::string& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error)
+    return make_status(absl::StatusCode::kFailedPrecondition, "{}: cannot create: {}", folder,
+                       error.message());
+  return absl::OkStatus();
+}
+
+/// Images that an earlier run left in the folder, by its own run.json; nothing else is touched.
+void remove_old_images(const fs::path& folder) {
+  const absl::StatusOr<Json> old = read_json(folder / "run.json");
+  if (!old.ok() || !old->is_object() || !old->contains("mixes") || !(*old)["mixes"].is_array()) return;
+  for (const Json& mix : (*old)["mixes"]) {
+    if (!mix.is_object() || !mix.contains("image") || !mix["image"].is_string()) continue;
+    const fs::path name = mix["image"].get<std::string>();
+    std::error_code ignored;  // gone already
+    if (name == name.filename() && name.extension() == ".exr") fs::remove(folder / name, ignored);
+  }
+}
+
+absl::Status measure(const FilmImage& image, const FilmImage& reference, const JobSpec& spec,
+                     MixRecord& record) {
+  ASSIGN_OR_RETURN(record.error, compare(image, reference));
+  for (const Region& region : spec.regions) {
+    ASSIGN_OR_RETURN(ErrorFigures figures, compare(image, reference, region.rect));
+    record.regions.emplace_back(region.name, std::move(figures));
+  }
+  return absl::OkStatus();
+}
+
+/// relMSE of a checkpoint's image, kept at its place.
+void keep_checkpoint(RunRecord& run, const RunSummary& summary, int mix, int checkpoint,
+                     const FilmImage& image, const FilmImage& reference) {
+  const auto m = static_cast<size_t>(mix), c = static_cast<size_t>(checkpoint);
+  if (run.mixes.size() < summary.mixes.size()) run.mixes.resize(summary.mixes.size());
+  auto& figures = run.mixes[m].checkpoint_relmse;
+  if (c >= summary.mixes[m].checkpoints.size()) return;  // the final image of a run cut short is none
+  figures.resize(summary.mixes[m].checkpoints.size());
+  if (const auto error = compare(image, reference); error.ok()) figures[c] = error->relmse;
+}
+
+absl::Status write_images(const fs::path& folder, const FetchedRun& fetched,
+                          const std::optional<FilmImage>& reference, RunRecord& run) {
+  absl::Status measured;  // a comparison that fails must not cost the images that follow
+  const JobSpec& spec = fetched.summary.spec;
+  const std::vector<std::string> names = labels(spec.mixes);
+  for (size_t m = 0; m < names.size(); ++m) {
+    MixRecord& record = run.mixes[m];
+    record.label = names[m];
+    record.image = file_stem(names[m]) + ".exr";
+    const FilmImage& image = fetched.images[m];
+    if (image.rgb.empty()) return absl::DataLossError("the server sent no image of " + names[m]);
+    RETURN_IF_ERROR(
+        write_exr(folder / record.image, image,
+                  {names[m], fetched.summary.mixes[m].cpu_seconds, spec.scene, spec.seed, run.partial}));
+    if (reference) measured.Update(measure(image, *reference, spec, record));
+  }
+  return measured;
+}
+
+}  // namespace
+
+absl::StatusOr<FilmImage> read_reference(const JobSpec& spec) {
+  absl::StatusOr<FilmImage> image = read_exr(spec.reference);
+  if (!image.ok()) return make_status(image.status().code(), "--reference: {}", message_of(image.status()));
+  if (image->width != spec.width || image->height != spec.height)
+    return invalid_input("--reference: {} is {}x{}, the image {}x{}", spec.reference, image->width,
+                         image->height, spec.width, spec.height);
+  if (!contains(image->window, spec.crop))
+    return invalid_input("--reference: {} does not cover the rendered pixels", spec.reference);
+  return image;
+}
+
+absl::StatusOr<Json> write_outcome(Server& server, const JobId& job, const std::string& folder, bool partial,
+                                   std::stop_token stop) {
+  RunRecord run;
+  run.partial = partial;
+  std::optional<FilmImage> reference;
+  bool asked = false;
+  // The reference is named by the job itself, which only the answer's summary tells.
+  const auto each_checkpoint = [&](const RunSummary& summary, int mix, int checkpoint,
+                                   const FilmImage& image) {
+    if (!asked && !summary.spec.reference.empty())
+      if (auto read = read_reference(summary.spec); read.ok()) reference = *std::move(read);
+    asked = true;
+    if (reference) keep_checkpoint(run, summary, mix, checkpoint, image, *reference);
+  };
+  ASSIGN_OR_RETURN(const FetchedRun fetched, server.fetch(job, stop, each_checkpoint));
+  run.summary = fetched.summary;
+  run.scheduler_cpu_seconds = fetched.scheduler_cpu_seconds;
+  run.mixes.resize(fetched.summary.mixes.size());
+  absl::Status fault;  // told at the end: everything that can be written is written
+  if (!fetched.summary.spec.reference.empty() && !reference) {
+    absl::StatusOr<FilmImage> read = read_reference(fetched.summary.spec);
+    fault.Update(read.status());
+    if (read.ok()) reference = *std::move(read);
+  }
+  RETURN_IF_ERROR(make_folder(folder));
+  remove_old_images(folder);
+  fault.Update(write_images(folder, fetched, reference, run));
+  Json json = run_json(run);
+  RETURN_IF_ERROR(write_file_atomically(fs::path(folder) / "run.json", json_text(json)));
+  fault.Update(write_report(folder));
+  RETURN_IF_ERROR(fault);
+  return json;
+}
+
+namespace {
+
+std::string figure(const Json& value, const char* format) {
+  return value.is_number() ? fmt::format(fmt::runtime(format), value.get<double>()) : "–";
+}
+
+/// "0.0123 [0.0110, 0.0140]"
+std::string error_text(const Json& mix) {
+  std::string text = figure(mix["relmse"], "{:.4g}");
+  const Json& ci = mix["relmse_ci"];
+  if (ci.is_array()) text += fmt::format(" [{}, {}]", figure(ci[0], "{:.3g}"), figure(ci[1], "{:.3g}"));
+  return text;
+}
+
+}  // namespace
+
+std::string outcome_text(const Json& run, const std::string& folder) {
+  size_t width = 3;
+  for (const Json& mix : run["mixes"]) width = std::max(width, mix["mix"].get<std::string>().size());
+  std::string text = fmt::format("{:{}}  {:>8}  {:>9}  {:>12}  {}\n", "mix", width, "passes", "CPU s",
+                                 "spent/budget", "relMSE [95 % interval]");
+  for (const Json& mix : run["mixes"])
+    text += fmt::format("{:{}}  {:>8}  {:>9}  {:>12}  {}\n", mix["mix"].get<std::string>(), width,
+                        mix["passes"].get<int64_t>(), figure(mix["cpu_seconds"], "{:.2f}"),
+                        figure(mix["budget_ratio"], "{:.3f}"), error_text(mix));
+  if (run["partial"].get<bool>()) text += "interrupted: the images hold what was rendered until then\n";
+  for (const Json& mix : run["mixes"])
+    if (!mix["substitutions"].empty())
+      for (const Json& line : mix["substitutions"])
+        text += fmt::format("note: {}: {}\n", mix["mix"].get<std::string>(), line.get<std::string>());
+  const fs::path base = fs::absolute(folder).lexically_normal();
+  for (const Json& mix : run["mixes"])
+    text += fmt::format("{}\n", (base / mix["image"].get<std::string>()).string());
+  for (const char* name : {"run.json", "report.html"}) text += fmt::format("{}\n", (base / name).string());
+  return text;
+}
+
+}  // namespace penumbra

@@ -1,0 +1,77 @@
+#include "client/run_job.h"
+
+#include <thread>
+
+#include "client/exit_code.h"
+#include "client/outcome.h"
+#include "client/progress.h"
+#include "proto/status.h"
+
+namespace penumbra {
+namespace {
+
+absl::Status failure_of(const JobStatus& status) {
+  const auto code =
+      exit_code(status) == kExitBadInput ? absl::StatusCode::kInvalidArgument : absl::StatusCode::kAborted;
+  return make_status(
+      code, "{}",
+      status.message.empty() ? std::string("the job ") + std::string(name_of(status.state)) : status.message);
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<Backend>> open_backend(const ServerOptions& options,
+                                                      const ClusterOptions& cluster) {
+  auto backend = std::make_unique<Backend>();
+  if (!options.address.empty()) {
+    if (!cluster.workers.empty() || !cluster.threads.empty())
+      return invalid_input(
+          "--workers and --threads are for a local cluster; with --server they have no meaning");
+    ASSIGN_OR_RETURN(Server server, Server::open(options.address, options.credentials));
+    backend->server.emplace(std::move(server));
+    return backend;
+  }
+  const auto cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  ASSIGN_OR_RETURN(const ClusterSize size, cluster_size(cluster, cores));
+  ASSIGN_OR_RETURN(LocalCluster local, LocalCluster::start(size));
+  backend->cluster.emplace(std::move(local));
+  LocalCluster* const tended = &*backend->cluster;
+  ASSIGN_OR_RETURN(Server server, Server::open(tended->address(), {}, [tended] { return tended->tend(); }));
+  backend->server.emplace(std::move(server));
+  return backend;
+}
+
+absl::StatusOr<FinishedRun> run_job(Backend& backend, const Submission& submission, const std::string& folder,
+                                    bool quiet, std::stop_token stop) {
+  Server& server = *backend.server;
+  Progress progress(Progress::style_for(quiet));
+  for (const std::string& warning : submission.warnings) progress.note("warning: " + warning);
+  RETURN_IF_ERROR(server.upload(submission.bundle, stop,
+                                [&](uint64_t sent, uint64_t total) { progress.uploading(sent, total); }));
+  ASSIGN_OR_RETURN(const JobId job, server.submit(submission.spec, stop));
+
+  FinishedRun finished;
+  const auto each = [&](const JobStatus& status) {
+    progress.show(status);
+    return backend.cluster ? backend.cluster->tend() : absl::OkStatus();
+  };
+  absl::StatusOr<JobStatus> watched = server.watch(job, stop, each);
+  finished.interrupted = watched.status().code() == absl::StatusCode::kCancelled && stop.stop_requested();
+  if (finished.interrupted) {
+    progress.note("interrupted: cancelling the job and keeping what was rendered");
+    watched = server.cancel(job);
+  }
+  progress.clear();
+  RETURN_IF_ERROR(watched.status());
+  finished.last = *watched;
+  const bool done = finished.last.state == JobState::kDone;
+  if (!done && finished.last.plan.empty()) {  // nothing was rendered
+    if (finished.interrupted) return absl::CancelledError("interrupted before anything was rendered");
+    return failure_of(finished.last);
+  }
+  ASSIGN_OR_RETURN(finished.run, write_outcome(server, job, folder, !done, std::stop_token()));
+  if (!done && !finished.interrupted) return failure_of(finished.last);
+  return finished;
+}
+
+}  // namespace penumbra

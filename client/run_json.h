@@ -1,0 +1,44 @@
+#pragma once
+// run.json: what a run was, what it cost, how good it is.
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "client/job_json.h"
+#include "film/metrics.h"
+#include "proto/run.h"
+
+namespace penumbra {
+
+/// What the client adds to the server's figures of one mix.
+struct MixRecord {
+  std::string label;  ///< with `#2` where a mix is repeated
+  std::string image;  ///< file name in the run's folder
+  std::optional<ErrorFigures> error;
+  std::vector<std::pair<std::string, ErrorFigures>> regions;
+  std::vector<std::optional<double>> checkpoint_relmse;  ///< parallel to MixSummary::checkpoints
+};
+
+struct RunRecord {
+  RunSummary summary;
+  double scheduler_cpu_seconds = 0;
+  std::vector<MixRecord> mixes;
+  bool partial = false;  ///< interrupted: images hold what was accepted until then
+};
+
+/// The run as the interface's schema 1, and more keys: `partial`, `state`, `reference`, `plan` (passes per
+/// mix), `spec` (enough to replay), `warnings`, `tiles`, `workers`, times of the phases. Figures that do
+/// not apply are null.
+Json run_json(const RunRecord& run);
+
+/// The job that renders the same bits again: the spec with the run's plan. InvalidArgument for a run.json
+/// without one (a run that ended before it was planned).
+absl::StatusOr<JobSpec> replay_spec(const Json& run);
+
+/// Reads a JSON file; InvalidArgument with path and position.
+absl::StatusOr<Json> read_json(const std::string& path);
+/// As it stands in files and on standard output: two blanks of indentation, newline at the end.
+std::string json_text(const Json& json);
+
+}  // namespace penumbra

@@ -1,0 +1,36 @@
+#include "client/submission.h"
+
+#include "client/outcome.h"
+#include "proto/status.h"
+#include "scenes/parser.h"
+
+namespace penumbra {
+
+absl::StatusOr<Submission> prepare(const JobOptions& options) {
+  ASSIGN_OR_RETURN(const SceneDescription scene, parse_scene_file(options.scene));
+  ASSIGN_OR_RETURN(const SceneDefaults defaults, scene_defaults(scene));
+  Submission submission;
+  ASSIGN_OR_RETURN(submission.spec, make_job(options, defaults));
+  submission.warnings = scene.warnings;
+  submission.warnings.insert(submission.warnings.end(), defaults.notes.begin(), defaults.notes.end());
+  if (submission.spec.strict && !submission.warnings.empty())
+    return invalid_input("{} (--strict)", submission.warnings[0]);
+  if (!submission.spec.reference.empty()) RETURN_IF_ERROR(read_reference(submission.spec).status());
+  ASSIGN_OR_RETURN(submission.bundle, make_bundle(options.scene, scene));
+  submission.spec.bundle = sha256(serialize(submission.bundle.index));
+  return submission;
+}
+
+absl::StatusOr<Submission> prepare_again(const JobSpec& spec) {
+  ASSIGN_OR_RETURN(const SceneDescription scene, parse_scene_file(spec.scene));
+  Submission submission;
+  submission.spec = spec;
+  ASSIGN_OR_RETURN(submission.bundle, make_bundle(spec.scene, scene));
+  const Digest digest = sha256(serialize(submission.bundle.index));
+  if (digest != spec.bundle)
+    return invalid_input("{}: the scene's files have changed since the run (bundle {:.12}, then {:.12})",
+                         spec.scene, digest, spec.bundle);
+  return submission;
+}
+
+}  // namespace penumbra
