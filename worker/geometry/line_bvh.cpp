@@ -44,10 +44,11 @@ struct TriangleList {
 TriangleBlock block_of(const BuiltLeaf& leaf, const TriangleList& list) {
   TriangleBlock block;
   for (uint32_t lane = 0; lane < kWidth; ++lane) {
-    const auto& item = list.items[leaf.items[lane < leaf.count ? lane : 0]];
+    const bool used = lane < leaf.count;
+    const auto& item = list.items[leaf.items[used ? lane : 0]];
     block.id[lane] = item.id;
     for (int c = 0; c < 3; ++c) {
-      const Vec3f& p = item.mesh->positions[item.mesh->indices[3 * size_t{item.primitive} + c]];
+      const Vec3f& p = item.mesh->positions[item.mesh->indices[3 * size_t{item.primitive} + (used ? c : 0)]];
       for (int k = 0; k < 3; ++k) block.p[c][k][lane] = p[k];
     }
   }

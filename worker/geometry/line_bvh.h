@@ -25,7 +25,7 @@ struct alignas(64) LineNode {
   uint32_t leaves = 0;                 ///< bit k: child k is a leaf
 };
 
-/// 16 triangles as the scene has them; unused lanes repeat the first one, which changes no union.
+/// 16 triangles as the scene has them; unused lanes are points, which no plane cuts.
 struct alignas(64) TriangleBlock {
   float p[3][3][kWidth];  ///< [vertex][axis]
   uint32_t id[kWidth];    ///< index of the triangle in LineBvh::first_triangle's numbering
