@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "worker/lights/convex_polygon.h"
-#include "worker/lights/plane_distance.h"
+#include "worker/lights/plane_side.h"
 #include "worker/lights/quad.h"
 #include "worker/lights/triangle.h"
 
@@ -34,7 +34,7 @@ FlatLight flat_light(const LightShape& shape, const Vec3d& x) {
     light.polygon = {o, o + u, o + v};
   }
   light.normal = u.cross(v);
-  light.in_front = distance_in_front(-o, u, v) > 0;
+  light.in_front = side_of_plane(-o, u, v).distance > 0;
   return light;
 }
 

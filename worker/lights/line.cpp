@@ -31,23 +31,17 @@ namespace {
 /// The rectangle's chord at a fraction of the edge across it.
 LightLine rectangle_line(const SeenShape& seen, bool along_u, const RectangleChord& chord, double fraction) {
   const auto& quad = std::get<QuadShape>(seen.shape());
-  const Vec3d u(quad.u), v(quad.v);
   LightLine line;
   line.corner = Vec3d(quad.o);
-  line.from = fraction * (along_u ? v : u);
-  line.along = along_u ? u : v;
+  line.from = fraction * Vec3d(along_u ? quad.v : quad.u);
+  line.along = Vec3d(along_u ? quad.u : quad.v);
   line.a = line.corner + line.from;
   line.b = line.a + line.along;
-  line.n = u.cross(v).normalized();
+  line.n = seen.rectangle()->normal();
   line.scale = 1 / seen.solid_angle();
   line.measure =
       AngularMeasure{chord.y0, chord.length, chord.d2, height_difference(chord.y0, chord.length, chord.d2)};
   return line;
-}
-
-double edge_length(const SeenShape& seen, bool of_u) {
-  const auto& quad = std::get<QuadShape>(seen.shape());
-  return Vec3d(of_u ? quad.u : quad.v).length();
 }
 
 }  // namespace
@@ -56,7 +50,7 @@ LightLine choose_line_solid_angle(const SeenShape& seen, bool along_u, double u)
   const SphericalRectangle* rectangle = seen.rectangle();
   if (rectangle == nullptr || seen.solid_angle() == 0) return {};
   const RectangleChord chord = rectangle->chord(along_u, u);
-  return rectangle_line(seen, along_u, chord, chord.offset.t / edge_length(seen, !along_u));
+  return rectangle_line(seen, along_u, chord, chord.offset.t / rectangle->edge_length(along_u ? 1 : 0));
 }
 
 LightLine line_solid_angle_through(const SeenShape& seen, bool along_u, const Vec3d& p) {

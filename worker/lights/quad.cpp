@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "worker/lights/plane_distance.h"
+#include "worker/lights/plane_side.h"
 
 namespace penumbra {
 
@@ -18,17 +18,16 @@ double area(const QuadShape& shape) {
   return Vec3d(shape.u).cross(Vec3d(shape.v)).length();
 }
 
-LightPoint point_at(const QuadShape& shape, const Vec2d& fractions) {
-  const Vec3d u(shape.u), v(shape.v);
-  return {Vec3d(shape.o) + fractions.x * u + fractions.y * v, u.cross(v).normalized()};
+Vec3d position_at(const QuadShape& shape, const Vec2d& fractions) {
+  return Vec3d(shape.o) + (fractions.x * Vec3d(shape.u) + fractions.y * Vec3d(shape.v));
 }
 
 LightPoint point_on(const QuadShape& shape, const Vec2d& u) {
-  return point_at(shape, u);
+  return {position_at(shape, u), Vec3d(shape.u).cross(Vec3d(shape.v)).normalized()};
 }
 
 double height_above(const QuadShape& shape, const Vec3d& x, const Vec3d&, const Vec3d&) {
-  return distance_in_front(x - Vec3d(shape.o), Vec3d(shape.u), Vec3d(shape.v));
+  return side_of_plane(x - Vec3d(shape.o), Vec3d(shape.u), Vec3d(shape.v)).distance;
 }
 
 }  // namespace penumbra

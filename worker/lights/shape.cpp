@@ -75,10 +75,10 @@ LightPoint SeenShape::sample(const Vec2d& u) const {
   if (!has_solid_angle()) return sample_area(*shape_, x_, u);
   if (solid_angle_ == 0) return {};
   const auto of_rectangle = [&](const SphericalRectangle& r) {
-    return point_at(std::get<QuadShape>(*shape_), r.sample(u));
+    return LightPoint{position_at(std::get<QuadShape>(*shape_), r.sample(u)), r.normal()};
   };
   const auto of_triangle = [&](const SphericalTriangle& t) {
-    return point_at(std::get<TriangleShape>(*shape_), t.sample(u));
+    return LightPoint{position_at(std::get<TriangleShape>(*shape_), t.sample(u)), t.normal()};
   };
   const auto of_parallelogram = [&](const TwoTriangles& t) {
     // A triangle by its solid angle, and what is left of the random number within it.
@@ -87,7 +87,8 @@ LightPoint SeenShape::sample(const Vec2d& u) const {
     const Vec2d rest(in_first ? u.x / share : (u.x - share) / (1 - share), u.y);
     const Vec2d b = in_first ? t.first.sample(rest) : t.second.sample(rest);
     // Of o, o+u, o+u+v the weights (b, c) are at u (b+c), v c; of o, o+u+v, o+v at u b, v (b+c).
-    return point_at(std::get<QuadShape>(*shape_), in_first ? Vec2d(b.x + b.y, b.y) : Vec2d(b.x, b.x + b.y));
+    const Vec2d fractions = in_first ? Vec2d(b.x + b.y, b.y) : Vec2d(b.x, b.x + b.y);
+    return LightPoint{position_at(std::get<QuadShape>(*shape_), fractions), t.first.normal()};
   };
   const auto of_sphere = [&](const VisibleSphere& s) {
     return point_at(std::get<SphereShape>(*shape_), s.sample_normal(u));

@@ -6,44 +6,16 @@
 #include <optional>
 
 #include "scenes/math.h"
+#include "worker/lights/offset_warp.h"
 
 namespace penumbra {
 
-/// Solid angle (sr) of [x0, x0+w] × [y0, y0+h] at distance z from x. 0 if z is 0 and x is not in it.
+/// Solid angle (sr) of [x0, x0+w] × [y0, y0+h] at distance z from x; 0 unless all of w, h, z are positive.
 double rectangle_solid_angle(double x0, double w, double y0, double h, double z);
 
-/// Chooses an offset along one axis, uniform in the solid angle of the strip it sweeps.
-class OffsetWarp {
- public:
-  /// `omega`: solid angle of the whole, > 0.
-  OffsetWarp(double x0, double w, double y0, double h, double z, double omega);
-
-  struct Offset {
-    double t;  ///< from the rectangle's edge, in [0,w]
-    double x;  ///< from the foot of x: x0 + t, but accurate relative to z where t ends near the foot
-  };
-  /// The strip [x0, x0+t] has the solid angle u·omega.
-  Offset sample(double u) const;
-
- private:
-  Offset sample_near_end(double u) const;
-
-  // The frame after mirroring: |x0| <= |x0+w|, y0 + y1 >= 0.
-  double x0_, w_, z_, omega_;
-  bool mirrored_;
-  double left_, right_, beyond_;  ///< solid angles of the infinite band left of x0, right of x0, right of x1
-  double top_, bottom_;           ///< elevations of the plane over the band's two edges
-  double rho0_, b0_;
-  double sin_left_, sin_right_;  ///< sin_half(left_, right_) and the other way round
-  bool foot_inside_and_near_;
-
-  double sin_half(double a, double b) const;
-  double sin_half_raised(double a, double b) const;
-};
-
-/// One chord parallel to an axis, at `offset` along the other.
+/// One chord parallel to an axis.
 struct RectangleChord {
-  OffsetWarp::Offset offset;
+  OffsetWarp::Offset offset;  ///< across the chord
   double y0 = 0, length = 0;  ///< along the chord, from the foot of x on its line
   double d2 = 0;              ///< squared distance of x to its line
 };
@@ -55,6 +27,10 @@ class SphericalRectangle {
   SphericalRectangle(const Vec3d& corner, const Vec3d& u, const Vec3d& v);
 
   double solid_angle() const { return omega_; }
+  /// Unit normal, along u × v.
+  const Vec3d& normal() const { return normal_; }
+  /// Length of edge u (axis 0) or v (1).
+  double edge_length(int axis) const { return size_[axis]; }
 
   /// Fractions of u and v, in [0,1], of a point uniform in solid angle. solid_angle() must not be 0.
   Vec2d sample(const Vec2d& u) const;
@@ -75,7 +51,8 @@ class SphericalRectangle {
   const OffsetWarp& warp(int axis) const;
   RectangleChord chord_with(bool along_u, OffsetWarp::Offset offset) const;
 
-  double start_[2], size_[2], z_, omega_ = 0;
+  Vec3d normal_;
+  double start_[2], size_[2], z_, omega_;
   mutable std::optional<OffsetWarp> warps_[2];
 };
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "worker/lights/plane_distance.h"
+#include "worker/lights/plane_side.h"
 
 namespace penumbra {
 
@@ -22,8 +22,9 @@ SphericalTriangle::SphericalTriangle(const Vec3d& a, const Vec3d& b, const Vec3d
   edge_length_ = edge_.length();
   // From the nearest vertex the distance to the plane has the smallest rounding error.
   const Vec3d& nearest = v[std::min_element(length, length + 3) - length];
-  const double distance = distance_in_front(-nearest, -base_, edge_);
-  determinant_ = distance * base_.cross(edge_).length();
+  const PlaneSide side = side_of_plane(-nearest, -base_, edge_);
+  normal_ = side.normal;
+  determinant_ = side.distance * side.twice_area;
   const double ab = a_.dot(b_), bc = b_.dot(v[third]), ca = v[third].dot(a_), c_length = length[third];
   sum_ = a_length_ * b_length_ + ab;
   slope_ = b_length_ * a_.dot(edge_) + a_length_ * b_.dot(edge_);

@@ -13,13 +13,15 @@ class SphericalTriangle {
 
   /// sr
   double solid_angle() const { return omega_; }
+  /// Unit normal, along (b−a) × (c−a).
+  const Vec3d& normal() const { return normal_; }
 
   /// Barycentric weights (of b, of c) of a point uniform in solid angle. solid_angle() must not be 0.
   Vec2d sample(const Vec2d& u) const;
 
  private:
-  Vec3d a_, b_, edge_, base_;  ///< a, farthest from x; b; c − a; a − b
-  int turn_;                   ///< a_ is the constructor's vertex number turn_, and the others follow it
+  Vec3d normal_, a_, b_, edge_, base_;  ///< a, farthest from x; b; c − a; a − b
+  int turn_;  ///< a_ is the constructor's vertex number turn_, and the others follow it
   double determinant_, omega_ = 0;
   double a_length_, b_length_, edge_length_;
   double sum_;    ///< |a||b| + a·b

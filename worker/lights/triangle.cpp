@@ -1,6 +1,6 @@
 #include "worker/lights/triangle.h"
 
-#include "worker/lights/plane_distance.h"
+#include "worker/lights/plane_side.h"
 #include "worker/sampling/warp.h"
 
 namespace penumbra {
@@ -20,18 +20,19 @@ double area(const TriangleShape& shape) {
   return 0.5 * e.u.cross(e.v).length();
 }
 
-LightPoint point_at(const TriangleShape& shape, const Vec2d& weights) {
+Vec3d position_at(const TriangleShape& shape, const Vec2d& weights) {
   const Edges e = edges_of(shape);
-  return {Vec3d(shape.p0) + weights.x * e.u + weights.y * e.v, e.u.cross(e.v).normalized()};
+  return Vec3d(shape.p0) + (weights.x * e.u + weights.y * e.v);
 }
 
 LightPoint point_on(const TriangleShape& shape, const Vec2d& u) {
-  return point_at(shape, square_to_triangle(u));
+  const Edges e = edges_of(shape);
+  return {position_at(shape, square_to_triangle(u)), e.u.cross(e.v).normalized()};
 }
 
 double height_above(const TriangleShape& shape, const Vec3d& x, const Vec3d&, const Vec3d&) {
   const Edges e = edges_of(shape);
-  return distance_in_front(x - Vec3d(shape.p0), e.u, e.v);
+  return side_of_plane(x - Vec3d(shape.p0), e.u, e.v).distance;
 }
 
 }  // namespace penumbra
