@@ -54,9 +54,8 @@ void Coordinator::post(Work work, std::function<void()> refuse) {
   refuse();
 }
 
-uint64_t Coordinator::sync(WorkerState state, std::vector<absl::StatusOr<ResultShape>> shapes,
-                           SyncReply reply) {
-  const uint64_t ticket = next_ticket_++;
+void Coordinator::sync(uint64_t ticket, WorkerState state, std::vector<absl::StatusOr<ResultShape>> shapes,
+                       SyncReply reply) {
   auto work = [this, ticket, state = std::move(state), shapes = std::move(shapes), reply](
                   Scheduler& scheduler, const Now& now) mutable -> Finish {
     if (const absl::Status status = scheduler.report(state, shapes, now); !status.ok())
@@ -67,7 +66,6 @@ uint64_t Coordinator::sync(WorkerState state, std::vector<absl::StatusOr<ResultS
     return nullptr;
   };
   post(std::move(work), [reply] { reply(absl::UnavailableError("the server is stopping")); });
-  return ticket;
 }
 
 void Coordinator::cancel_sync(uint64_t ticket) {

@@ -57,9 +57,11 @@ class Coordinator {
     return future.get();
   }
 
-  /// A worker's Sync: reports, and answers at once or when there is something to say. The ticket serves
-  /// cancel_sync.
-  uint64_t sync(WorkerState state, std::vector<absl::StatusOr<ResultShape>> shapes, SyncReply reply);
+  /// Names one sync() for cancel_sync().
+  uint64_t new_ticket() { return next_ticket_++; }
+  /// A worker's Sync: reports, and answers at once or when there is something to say.
+  void sync(uint64_t ticket, WorkerState state, std::vector<absl::StatusOr<ResultShape>> shapes,
+            SyncReply reply);
   /// The worker no longer waits: the reply comes at once, for whatever it is worth.
   void cancel_sync(uint64_t ticket);
 

@@ -1,0 +1,62 @@
+#include "server/frame_stream.h"
+
+#include <algorithm>
+
+#include "proto/convert.h"
+
+namespace penumbra {
+namespace {
+
+// Pixels of one chunk: with 8 floats each it stays below a megabyte.
+constexpr int64_t kChunkPixels = 1 << 15;
+
+/// Rows [y0,y1) of a layer with `channels` floats per pixel.
+void copy_rows(const std::vector<float>& layer, size_t channels, const PixelRect& window, int y0, int y1,
+               google::protobuf::RepeatedField<float>& out) {
+  const size_t row = static_cast<size_t>(window.width()) * channels;
+  const float* begin = layer.data() + static_cast<size_t>(y0 - window.y0) * row;
+  out.Add(begin, begin + static_cast<size_t>(y1 - y0) * row);
+}
+
+}  // namespace
+
+absl::Status FrameStream::write(const v1::FetchFramesResponse& message) {
+  return writer_.Write(message) ? absl::OkStatus() : absl::CancelledError("the client has hung up");
+}
+
+absl::Status FrameStream::summary(const RunSummary& summary) {
+  v1::FetchFramesResponse message;
+  *message.mutable_summary() = to_proto(summary);
+  return write(message);
+}
+
+absl::Status FrameStream::frame(const AssembledFrame& frame) {
+  const PixelRect& window = frame.image.window;
+  const int rows = static_cast<int>(std::max<int64_t>(1, kChunkPixels / window.width()));
+  for (int y0 = window.y0; y0 < window.y1; y0 += rows) {
+    const int y1 = std::min(y0 + rows, window.y1);
+    v1::FetchFramesResponse message;
+    v1::FrameChunk& chunk = *message.mutable_frame();
+    chunk.set_mix(frame.mix);
+    chunk.set_checkpoint(frame.checkpoint);
+    chunk.set_final(frame.final);
+    *chunk.mutable_rect() = to_proto(PixelRect{window.x0, y0, window.x1, y1});
+    copy_rows(frame.image.rgb, 3, window, y0, y1, *chunk.mutable_mean());
+    if (frame.final) {
+      copy_rows(frame.image.variance, 3, window, y0, y1, *chunk.mutable_variance());
+      copy_rows(frame.image.samples, 1, window, y0, y1, *chunk.mutable_samples());
+      copy_rows(frame.image.cost, 1, window, y0, y1, *chunk.mutable_cost());
+    }
+    chunk.set_last(y1 == window.y1);
+    if (absl::Status status = write(message); !status.ok()) return status;
+  }
+  return absl::OkStatus();
+}
+
+absl::Status FrameStream::end(double scheduler_cpu_seconds) {
+  v1::FetchFramesResponse message;
+  message.mutable_end()->set_scheduler_cpu_seconds(scheduler_cpu_seconds);
+  return write(message);
+}
+
+}  // namespace penumbra

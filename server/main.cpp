@@ -1,0 +1,133 @@
+// penumbra-server: flags, folders, services, signals.
+#include <signal.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <sys/resource.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+
+#include "film/atomic_file.h"
+#include "proto/status.h"
+#include "server/blobs_service.h"
+#include "server/coordinator.h"
+#include "server/listener.h"
+#include "server/render_service.h"
+#include "server/sqlite_store.h"
+#include "server/store_folder.h"
+#include "server/worker_service.h"
+
+namespace penumbra {
+namespace {
+
+constexpr int kFailed = 1, kBadUsage = 2;
+
+struct Options {
+  std::string listen = "127.0.0.1:7400";
+  std::string store;
+  std::string address_file;
+  std::string log_level = "info";
+  Credentials credentials;
+};
+
+Now now() {
+  using std::chrono::duration;
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return {duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(),
+          duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(),
+          seconds(usage.ru_utime) + seconds(usage.ru_stime)};
+}
+
+void add_flags(CLI::App& app, Options& options) {
+  app.add_option("--listen", options.listen, "HOST:PORT; port 0 takes a free one")->capture_default_str();
+  app.add_option("--store", options.store, "folder for jobs, scenes and results; a restart continues from it")
+      ->required();
+  app.add_option("--address-file", options.address_file, "file to write the bound HOST:PORT to");
+  app.add_option("--tls-cert", options.credentials.cert, "server certificate, PEM");
+  app.add_option("--tls-key", options.credentials.key, "its private key, PEM");
+  app.add_option("--tls-ca", options.credentials.ca,
+                 "authority that clients' and workers' certificates must have");
+  app.add_option("--token-file", options.credentials.token_file,
+                 "file with the token that callers must send");
+  app.add_option("--log-level", options.log_level, "trace, debug, info, warning, error or off")
+      ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))
+      ->capture_default_str();
+  app.set_version_flag("--version", "penumbra-server " PENUMBRA_VERSION);
+}
+
+/// Waits for SIGTERM or SIGINT (blocked in every thread), or for the store to fail.
+void wait_for_end(const Coordinator& coordinator) {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  const timespec half_second{0, 500'000'000};
+  while (sigtimedwait(&signals, nullptr, &half_second) < 0)
+    if (coordinator.failed()) return;
+}
+
+void block_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  signal(SIGPIPE, SIG_IGN);
+}
+
+absl::Status serve(const Options& options) {
+  ASSIGN_OR_RETURN(const StoreFolder folder, StoreFolder::open(options.store));
+  ASSIGN_OR_RETURN(std::unique_ptr<JobStore> store, open_sqlite_store(folder.database()));
+  ASSIGN_OR_RETURN(BlobFolder blobs, BlobFolder::open(folder.blobs()));
+  Coordinator coordinator(std::move(store), std::move(blobs), SchedulerLimits{}, now);
+  RETURN_IF_ERROR(coordinator.start());
+
+  constexpr uint64_t kMostBlobBytes = uint64_t{1} << 36;
+  BlobsService blobs_service(coordinator.blobs(), kMostBlobBytes);
+  RenderService render_service(coordinator);
+  WorkerService worker_service(coordinator);
+  ASSIGN_OR_RETURN(Listener listener, listen(options.listen, options.credentials,
+                                             {&blobs_service, &render_service, &worker_service}));
+  if (!options.address_file.empty())
+    RETURN_IF_ERROR(write_file_atomically(options.address_file, listener.address + "\n"));
+  spdlog::info("listening on {}, store {}", listener.address, options.store);
+
+  wait_for_end(coordinator);
+  const bool failed = coordinator.failed();
+  spdlog::info("stopping");
+  // Waiting workers are answered first: their calls would otherwise hold up the shutdown.
+  coordinator.stop();
+  listener.server->Shutdown(std::chrono::system_clock::now() + std::chrono::seconds(1));
+  if (failed) return absl::InternalError("the job store failed");
+  return absl::OkStatus();
+}
+
+int run(int argc, char** argv) {
+  Options options;
+  CLI::App app(
+      "Coordinates render jobs: splits them into tiles, leases the tiles to workers, keeps the results.");
+  add_flags(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kBadUsage;
+  }
+  spdlog::set_default_logger(spdlog::stderr_logger_mt("server"));
+  spdlog::set_level(spdlog::level::from_str(options.log_level));
+  block_signals();
+  const absl::Status status = serve(options);
+  if (status.ok()) return 0;
+  spdlog::error("{}", message_of(status));
+  return absl::IsInvalidArgument(status) ? kBadUsage : kFailed;
+}
+
+}  // namespace
+}  // namespace penumbra
+
+int main(int argc, char** argv) {
+  return penumbra::run(argc, argv);
+}

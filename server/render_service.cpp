@@ -1,0 +1,198 @@
+#include "server/render_service.h"
+
+#include <sys/resource.h>
+#include <time.h>
+
+#include <algorithm>
+#include <random>
+
+#include "proto/convert.h"
+#include "proto/rpc_status.h"
+#include "scenes/bundle.h"
+#include "server/assembler.h"
+#include "server/frame_stream.h"
+#include "server/job_report.h"
+
+namespace penumbra {
+namespace {
+
+// A watcher hears of changes at most this often, and of nothing this seldom.
+constexpr double kLeastWatchSeconds = 0.2, kMostWatchSeconds = 5;
+// Frames of one fetch that are kept in memory at a time.
+constexpr uint64_t kAssemblyBytes = uint64_t{1} << 30;
+// More tasks than this mean that the tiles are too small for the picture.
+constexpr uint64_t kMostTiles = uint64_t{1} << 20;
+
+/// Short and printable; needs only to be unlikely to repeat (submit checks the store's).
+JobId new_job_id() {
+  std::random_device device;
+  const uint64_t bits = (uint64_t{device()} << 32) | device();
+  return fmt::format("j{:010x}", bits & 0xff'ffff'ffffu);
+}
+
+/// The bundle's index must be sound and all its blobs here, or a worker would find out much later.
+absl::Status check_bundle(const BlobFolder& blobs, const JobSpec& spec) {
+  const absl::StatusOr<std::string> json = blobs.read(spec.bundle);
+  if (!json.ok())
+    return make_status(absl::StatusCode::kFailedPrecondition, "the bundle's index {} is missing",
+                       spec.bundle);
+  ASSIGN_OR_RETURN(const BundleIndex index, parse_bundle_index(*json));
+  for (const BundleEntry& entry : index.entries) {
+    if (!is_digest(entry.digest)) return invalid_input("bundle: {}: not a digest", entry.name);
+    const auto size = blobs.size(entry.digest);
+    if (!size)
+      return make_status(absl::StatusCode::kFailedPrecondition, "the bundle's blob {} ({}) is missing",
+                         entry.digest, entry.name);
+    if (*size != entry.size)
+      return invalid_input("bundle: {}: the index says {} bytes, the blob has {}", entry.name, entry.size,
+                           *size);
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<JobSpec> checked_spec(const BlobFolder& blobs, const v1::SubmitRequest& request) {
+  if (request.request_id().empty() || request.request_id().size() > 128)
+    return invalid_input("request_id: must have 1 to 128 characters");
+  ASSIGN_OR_RETURN(JobSpec spec, from_proto(request.spec()));
+  for (const Mix& mix : spec.mixes)
+    if (mix.automatic) return invalid_input("mixes: this server does not plan `auto`");
+  if (tiles_of(spec).size() > kMostTiles)
+    return invalid_input("tile: {} pixels make more than {} tiles of this picture", spec.tile, kMostTiles);
+  RETURN_IF_ERROR(check_bundle(blobs, spec));
+  return spec;
+}
+
+absl::Status no_job(const JobId& id) {
+  return make_status(absl::StatusCode::kNotFound, "no job {:.80}", id);
+}
+
+/// Flattens what call() returns: the coordinator's error or the work's.
+template <class T>
+absl::StatusOr<T> flat(absl::StatusOr<absl::StatusOr<T>> nested) {
+  if (!nested.ok()) return nested.status();
+  return *std::move(nested);
+}
+
+double thread_cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+}  // namespace
+
+grpc::Status RenderService::Submit(grpc::ServerContext*, const v1::SubmitRequest* request,
+                                   v1::SubmitResponse* response) {
+  const absl::StatusOr<JobSpec> spec = checked_spec(coordinator_.blobs(), *request);
+  if (!spec.ok()) return to_grpc(spec.status());
+  // What the job needs must outlive the power before the job does. Uploads made their blobs durable.
+  const absl::StatusOr<JobId> id = coordinator_.call([&](Scheduler& scheduler, const Now& now) -> JobId {
+    JobId fresh = new_job_id();
+    while (scheduler.find(fresh) != nullptr) fresh = new_job_id();
+    return scheduler.submit(fresh, request->request_id(), *spec, now);
+  });
+  if (!id.ok()) return to_grpc(id.status());
+  response->set_job(*id);
+  return grpc::Status::OK;
+}
+
+absl::StatusOr<JobStatus> RenderService::status(const JobId& id) {
+  return flat(coordinator_.call([&](Scheduler& scheduler, const Now& now) -> absl::StatusOr<JobStatus> {
+    const JobRecord* job = scheduler.find(id);
+    if (job == nullptr) return no_job(id);
+    return status_of(scheduler, *job, now);
+  }));
+}
+
+grpc::Status RenderService::GetJob(grpc::ServerContext*, const v1::JobRequest* request,
+                                   v1::JobStatus* response) {
+  const absl::StatusOr<JobStatus> found = status(request->job());
+  if (!found.ok()) return to_grpc(found.status());
+  *response = to_proto(*found);
+  return grpc::Status::OK;
+}
+
+grpc::Status RenderService::Watch(grpc::ServerContext* context, const v1::JobRequest* request,
+                                  grpc::ServerWriter<v1::JobStatus>* writer) {
+  uint64_t revision = 0;
+  for (;;) {
+    // Taken before the status: a change in between is told again, never missed.
+    revision = coordinator_.wait_for_change(revision, 0);
+    const absl::StatusOr<JobStatus> found = status(request->job());
+    if (!found.ok()) return to_grpc(found.status());
+    if (!writer->Write(to_proto(*found))) return grpc::Status::CANCELLED;
+    if (is_final(found->state)) return grpc::Status::OK;
+    std::this_thread::sleep_for(std::chrono::duration<double>(kLeastWatchSeconds));
+    // A watcher that has hung up is noticed within a second.
+    for (double waited = kLeastWatchSeconds; waited < kMostWatchSeconds; waited += 1) {
+      if (context->IsCancelled()) return grpc::Status::CANCELLED;
+      if (coordinator_.wait_for_change(revision, 1) != revision) break;
+    }
+  }
+}
+
+grpc::Status RenderService::ListJobs(grpc::ServerContext*, const v1::ListJobsRequest*,
+                                     v1::ListJobsResponse* response) {
+  auto jobs = coordinator_.call([](Scheduler& scheduler, const Now& now) {
+    std::vector<JobStatus> all;
+    for (const auto& [id, job] : scheduler.jobs()) all.push_back(status_of(scheduler, *job, now));
+    return all;
+  });
+  if (!jobs.ok()) return to_grpc(jobs.status());
+  std::stable_sort(jobs->begin(), jobs->end(), [](const JobStatus& a, const JobStatus& b) {
+    return a.submitted_unix_seconds > b.submitted_unix_seconds;
+  });
+  for (const JobStatus& job : *jobs) *response->add_jobs() = to_proto(job);
+  return grpc::Status::OK;
+}
+
+grpc::Status RenderService::Cancel(grpc::ServerContext*, const v1::JobRequest* request,
+                                   v1::JobStatus* response) {
+  const auto found =
+      flat(coordinator_.call([&](Scheduler& scheduler, const Now& now) -> absl::StatusOr<JobStatus> {
+        RETURN_IF_ERROR(scheduler.cancel(request->job(), now));
+        return status_of(scheduler, *scheduler.find(request->job()), now);
+      }));
+  if (!found.ok()) return to_grpc(found.status());
+  *response = to_proto(*found);
+  return grpc::Status::OK;
+}
+
+grpc::Status RenderService::Explain(grpc::ServerContext*, const v1::JobRequest* request,
+                                    v1::ExplainResponse* response) {
+  const auto reasons = flat(coordinator_.call(
+      [&](Scheduler& scheduler, const Now& now) -> absl::StatusOr<std::vector<std::string>> {
+        const JobRecord* job = scheduler.find(request->job());
+        if (job == nullptr) return no_job(request->job());
+        return explain(scheduler, *job, now);
+      }));
+  if (!reasons.ok()) return to_grpc(reasons.status());
+  for (const std::string& reason : *reasons) response->add_reasons(reason);
+  return grpc::Status::OK;
+}
+
+grpc::Status RenderService::FetchFrames(grpc::ServerContext*, const v1::FetchFramesRequest* request,
+                                        grpc::ServerWriter<v1::FetchFramesResponse>* writer) {
+  struct Taken {
+    RunSummary summary;
+    Assembly assembly;
+    double scheduler_cpu_seconds;
+  };
+  const double started = thread_cpu_seconds();
+  const auto taken =
+      flat(coordinator_.call([&](Scheduler& scheduler, const Now& now) -> absl::StatusOr<Taken> {
+        const JobRecord* job = scheduler.find(request->job());
+        if (job == nullptr) return no_job(request->job());
+        return Taken{summary_of(scheduler, *job, now), assembly_of(*job), scheduler_cpu_seconds(*job, now)};
+      }));
+  if (!taken.ok()) return to_grpc(taken.status());
+  FrameStream stream(*writer);
+  absl::Status status = stream.summary(taken->summary);
+  if (status.ok() && !request->summary_only())
+    status = assemble(taken->assembly, coordinator_.blobs(), request->checkpoints(), kAssemblyBytes,
+                      [&](const AssembledFrame& frame) { return stream.frame(frame); });
+  if (status.ok()) status = stream.end(taken->scheduler_cpu_seconds + thread_cpu_seconds() - started);
+  return to_grpc(status);
+}
+
+}  // namespace penumbra

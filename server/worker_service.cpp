@@ -1,0 +1,62 @@
+#include "server/worker_service.h"
+
+#include "film/tile_pixels.h"
+#include "proto/convert.h"
+#include "proto/rpc_status.h"
+
+namespace penumbra {
+namespace {
+
+/// Reads a result's bytes: they must be whole, finite, and of one rectangle.
+absl::StatusOr<ResultShape> shape_of(const BlobFolder& blobs, const CompletedTask& task) {
+  if (task.result.empty()) return ResultShape{};  // a pilot; the scheduler refuses it for anything else
+  absl::StatusOr<std::string> bytes = blobs.read(task.result);
+  // Corrupted bytes were removed: like missing ones they are uploaded again.
+  if (absl::IsDataLoss(bytes.status())) return absl::NotFoundError(bytes.status().message());
+  if (!bytes.ok()) return bytes.status();
+  ASSIGN_OR_RETURN(const TileResult result, parse_tile_result(*bytes));
+  ResultShape shape;
+  for (const TilePixels& mix : result.mixes) {
+    if (!shape.passes.empty() && mix.rect != shape.rect)
+      return invalid_input("result {}: its mixes cover different tiles", task.result);
+    shape.rect = mix.rect;
+    shape.passes.push_back(mix.passes);
+  }
+  return shape;
+}
+
+/// One call. Lives until gRPC says that it is over; finished exactly once, by the coordinator's reply.
+class SyncCall final : public grpc::ServerUnaryReactor {
+ public:
+  SyncCall(Coordinator& coordinator, const v1::SyncRequest& request, v1::SyncResponse& response)
+      : coordinator_(coordinator), ticket_(coordinator.new_ticket()) {
+    absl::StatusOr<WorkerState> state = from_proto(request);
+    if (!state.ok()) {
+      Finish(to_grpc(state.status()));
+      return;
+    }
+    std::vector<absl::StatusOr<ResultShape>> shapes;
+    for (const CompletedTask& task : state->completed) shapes.push_back(shape_of(coordinator.blobs(), task));
+    coordinator.sync(ticket_, *std::move(state), std::move(shapes),
+                     [this, &response](absl::StatusOr<DesiredState> desired) {
+                       if (desired.ok()) response = to_proto(*desired);
+                       Finish(to_grpc(desired.status()));
+                     });
+  }
+
+  void OnCancel() override { coordinator_.cancel_sync(ticket_); }
+  void OnDone() override { delete this; }
+
+ private:
+  Coordinator& coordinator_;
+  uint64_t ticket_;
+};
+
+}  // namespace
+
+grpc::ServerUnaryReactor* WorkerService::Sync(grpc::CallbackServerContext*, const v1::SyncRequest* request,
+                                              v1::SyncResponse* response) {
+  return new SyncCall(coordinator_, *request, *response);
+}
+
+}  // namespace penumbra

@@ -1,0 +1,20 @@
+#pragma once
+#include "proto/worker.grpc.pb.h"
+#include "server/coordinator.h"
+
+namespace penumbra {
+
+/// proto/worker.proto over the coordinator. Uses gRPC's callbacks, so that thousands of waiting workers
+/// hold no thread.
+class WorkerService final : public v1::Worker::CallbackService {
+ public:
+  explicit WorkerService(Coordinator& coordinator) : coordinator_(coordinator) {}
+
+  grpc::ServerUnaryReactor* Sync(grpc::CallbackServerContext*, const v1::SyncRequest* request,
+                                 v1::SyncResponse* response) override;
+
+ private:
+  Coordinator& coordinator_;
+};
+
+}  // namespace penumbra
