@@ -8,11 +8,20 @@
 namespace penumbra {
 namespace {
 
-/// Hidden intervals that wait to be taken from the visible set.
+/// Lanes of a block that single precision cannot decide.
+struct Doubt {
+  const TriangleBlock* block;
+  uint32_t lanes;
+  uint16_t odd1, odd2;  ///< lanes whose odd vertex is 1, or 2
+};
+
+/// Hidden intervals that wait to be taken from the visible set, of at most kBlocks blocks.
 class HiddenIntervals {
   using S = Simd;
 
  public:
+  static constexpr int kBlocks = kWidth;  // the leaves of one node
+
   void add(S::Mask chosen, S::Floats lo, S::Floats hi) {
     S::compress(lo_ + count_, chosen, lo);
     S::compress(hi_ + count_, chosen, hi);
@@ -22,47 +31,52 @@ class HiddenIntervals {
     lo_[count_] = i.lo;
     hi_[count_++] = i.hi;
   }
+  /// Written always and kept if it has lanes: a branch here is one that the processor guesses wrong.
+  void doubt(const Doubt& d) {
+    doubts_[doubt_count_] = d;
+    doubt_count_ += d.lanes != 0;
+  }
+  std::span<const Doubt> doubts() const { return {doubts_, static_cast<size_t>(doubt_count_)}; }
+  void no_more_doubts() { doubt_count_ = 0; }
   bool empty() const { return count_ == 0; }
-  /// Room for the hits of another block, and for the whole vector that a compressed store writes.
-  bool full() const { return count_ > kCapacity - 3 * kWidth; }
 
   /// Takes all of them from the set, whole connected stretches at a time. True if that changed it.
   bool flush(VisibleSet& visible) {
     bool changed = false;
-    for (int first = 0; first < count_; first += kWidth) {
+    int first = 0;
+    while (first < count_) {
+      // Only what meets the visible set counts; what is left of a vector is moved to its front.
+      alignas(64) float lows[kWidth], highs[kWidth];
       const int count = std::min(count_ - first, kWidth);
-      if (count == 1) {
-        changed |= visible.subtract(lo_[first], hi_[first]);
-      } else {
-        changed |= flush_vector(visible, lo_ + first, hi_ + first, count);
-      }
+      const S::Floats lo = S::load_unaligned(lo_ + first), hi = S::load_unaligned(hi_ + first);
+      const S::Mask meets = S::both(S::mask((1u << count) - 1), visible.meeting(lo, hi));
+      S::compress(lows, meets, lo);
+      S::compress(highs, meets, hi);
+      changed |= take(visible, lows, highs, std::popcount(S::bits(meets)));
+      first += count;
     }
     count_ = 0;
     return changed;
   }
 
  private:
-  static constexpr int kCapacity = 16 * kWidth;
+  // Every lane of every block, and the whole vector that a compressed store writes.
+  static constexpr int kCapacity = (kBlocks + 1) * kWidth;
 
-  static bool flush_vector(VisibleSet& visible, const float* lows, const float* highs, int count) {
+  /// Subtracts the connected stretches of a union of intervals.
+  static bool take(VisibleSet& visible, const float* lows, const float* highs, int count) {
+    if (count < 2) return count == 1 && visible.subtract(lows[0], highs[0]);
     const S::Mask used = S::mask((1u << count) - 1);
-    const S::Floats lo = S::select(used, S::load_unaligned(lows), S::all(2));
-    const S::Floats hi = S::select(used, S::load_unaligned(highs), S::all(-1));
-    const float least = S::lowest(lo), most = S::highest(hi);
-    if (!visible.overlaps(least, most)) return false;
-    // An end is one of the union's if no other interval holds it and goes on.
-    S::Mask inner_end = S::mask(0);
+    const S::Floats lo = S::select(used, S::load(lows), S::all(2)),
+                    hi = S::select(used, S::load(highs), S::all(-1));
+    // An end is one of the union's if no other interval holds it and goes on; starts likewise.
+    S::Mask inner_end = S::mask(0), inner_start = S::mask(0);
     for (int j = 0; j < count; ++j) {
-      inner_end =
-          S::either(inner_end, S::both(S::less_equal(S::all(lows[j]), hi), S::less(hi, S::all(highs[j]))));
+      const S::Floats l = S::all(lows[j]), h = S::all(highs[j]);
+      inner_end = S::either(inner_end, S::both(S::less_equal(l, hi), S::less(hi, h)));
+      inner_start = S::either(inner_start, S::both(S::less(l, lo), S::less_equal(lo, h)));
     }
     const S::Mask ends = S::without(used, inner_end);
-    if (S::bits(S::both(ends, S::less(hi, S::all(most)))) == 0) return visible.subtract(least, most);
-    S::Mask inner_start = S::mask(0);
-    for (int j = 0; j < count; ++j) {
-      inner_start =
-          S::either(inner_start, S::both(S::less(S::all(lows[j]), lo), S::less_equal(lo, S::all(highs[j]))));
-    }
     bool changed = false;
     for (uint32_t starts = S::bits(S::without(used, inner_start)); starts != 0; starts &= starts - 1) {
       const float start = lows[std::countr_zero(starts)];
@@ -72,7 +86,8 @@ class HiddenIntervals {
     return changed;
   }
 
-  int count_ = 0;
+  int count_ = 0, doubt_count_ = 0;
+  Doubt doubts_[kBlocks + 1];
   alignas(64) float lo_[kCapacity], hi_[kCapacity];
 };
 
@@ -83,9 +98,10 @@ class FanBlock {
  public:
   explicit FanBlock(const LineFan& fan) : fan_(fan) {}
 
-  /// Adds what the block hides within [v0,v1]; the widest such stretch is returned for the occluder cache.
-  float hidden(const TriangleBlock& block, const Excluded& excluded, float v0, float v1,
-               HiddenIntervals& out) const {
+  /// Adds what the block hides within [v0,v1], and the lanes that settle() must look at. True if one of the
+  /// stretches is wider than `widest`, which it then becomes.
+  bool hidden(const TriangleBlock& block, const Excluded& excluded, float v0, float v1, HiddenIntervals& out,
+              float& widest) const {
     Corner c[3];
     for (int i = 0; i < 3; ++i) c[i] = corner(block.p[i]);
     const S::Mask d1 = S::differ(c[0].below, c[1].below), d2 = S::differ(c[0].below, c[2].below);
@@ -103,19 +119,32 @@ class FanBlock {
     cut = S::without(S::without(cut, S::both(at1.behind, at2.behind)), S::both(at1.beyond, at2.beyond));
     if (excluded.count != 0) cut = S::without(cut, excluded_lanes(block, excluded));
     S::Floats v1s = S::div(e1.beta, e1.t), v2s = S::div(e2.beta, e2.t);
-    const S::Mask clear = S::both(at1.clear, at2.clear);
-    if (S::bits(S::without(cut, clear)) != 0) {
-      const S::Mask decided = decide_behind(e1, at1, e2, at2, v1s, v2s);
-      const S::Mask left = S::without(S::without(cut, clear), decided);
-      near_ends(block, candidates(left, at1, at2, v1s, v2s, v0, v1), S::bits(odd1), S::bits(odd2), e1, e2, v0,
-                v1, out);
-      cut = S::without(cut, left);
-    }
+    const S::Mask clear = S::either(S::both(at1.clear, at2.clear), decide_behind(e1, at1, e2, at2, v1s, v2s));
+    out.doubt({&block, candidates(S::without(cut, clear), at1, at2, v1s, v2s, v0, v1),
+               static_cast<uint16_t>(S::bits(odd1)), static_cast<uint16_t>(S::bits(odd2))});
     const S::Floats lo = S::max(S::min(v1s, v2s), S::all(v0)), hi = S::min(S::max(v1s, v2s), S::all(v1));
-    cut = S::both(cut, S::less(lo, hi));
-    if (S::bits(cut) == 0) return 0;
+    cut = S::both(S::both(cut, clear), S::less(lo, hi));
     out.add(cut, lo, hi);
-    return S::highest(S::select(cut, S::sub(hi, lo), S::all(0)));
+    if (S::bits(S::both(cut, S::less(S::all(widest), S::sub(hi, lo)))) == 0) return false;
+    widest = S::highest(S::select(cut, S::sub(hi, lo), S::all(0)));
+    return true;
+  }
+
+  /// Settles what was left in doubt.
+  void settle(HiddenIntervals& found, float v0, float v1) const {
+    for (const Doubt& d : found.doubts()) {
+      for (uint32_t lanes = d.lanes; lanes != 0; lanes &= lanes - 1) {
+        const int lane = std::countr_zero(lanes);
+        Vec3f p[3];
+        for (int c = 0; c < 3; ++c)
+          p[c] = {d.block->p[c][0][lane], d.block->p[c][1][lane], d.block->p[c][2][lane]};
+        const int odd = d.odd1 >> lane & 1 ? 1 : d.odd2 >> lane & 1 ? 2 : 0;
+        const Interval hidden = hidden_near_ends(fan_, p, odd);
+        const Interval clamped{std::max(hidden.lo, v0), std::min(hidden.hi, v1)};
+        if (clamped.lo < clamped.hi) found.add(clamped);
+      }
+    }
+    found.no_more_doubts();
   }
 
  private:
@@ -187,25 +216,6 @@ class FanBlock {
 
   static S::Mask excluded_lanes(const TriangleBlock& block, const Excluded& excluded) {
     return S::in_range(block.id, excluded.first, excluded.count);
-  }
-
-  [[gnu::noinline]] void near_ends(const TriangleBlock& block, uint32_t lanes, uint32_t odd1, uint32_t odd2,
-                                   const Crossings& e1, const Crossings& e2, float v0, float v1,
-                                   HiddenIntervals& out) const {
-    if (lanes == 0) return;
-    alignas(64) float edges[6][kWidth];
-    const S::Floats values[6] = {e1.beta, e1.t, e1.w, e2.beta, e2.t, e2.w};
-    for (int i = 0; i < 6; ++i) S::store(edges[i], values[i]);
-    for (; lanes != 0; lanes &= lanes - 1) {
-      const int lane = std::countr_zero(lanes);
-      Vec3f p[3];
-      for (int c = 0; c < 3; ++c) p[c] = {block.p[c][0][lane], block.p[c][1][lane], block.p[c][2][lane]};
-      const int odd = odd1 >> lane & 1 ? 1 : odd2 >> lane & 1 ? 2 : 0;
-      const Interval hidden = hidden_near_ends(fan_, p, odd, {edges[0][lane], edges[1][lane], edges[2][lane]},
-                                               {edges[3][lane], edges[4][lane], edges[5][lane]});
-      const Interval clamped{std::max(hidden.lo, v0), std::min(hidden.hi, v1)};
-      if (clamped.lo < clamped.hi) out.add(clamped);
-    }
   }
 
   const LineFan& fan_;

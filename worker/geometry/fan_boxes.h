@@ -39,8 +39,8 @@ class FanBoxes {
   }
 
   /// The part of the chord that is still of interest.
-  void narrow(float v0, float v1) {
-    const Vec3f e0 = a_ + chord_ * v0, e1 = a_ + chord_ * v1;
+  void narrow(Interval part) {
+    const Vec3f e0 = a_ + chord_ * part.lo, e1 = a_ + chord_ * part.hi;
     for (int k = 0; k < 3; ++k) {
       box_lo_[k] = x_[k] + std::min({0.f, e0[k], e1[k]}) - slack_;
       box_hi_[k] = x_[k] + std::max({0.f, e0[k], e1[k]}) + slack_;
@@ -50,10 +50,10 @@ class FanBoxes {
   }
 
   /// A hidden stretch: boxes that lie wholly within it are of no interest.
-  void skip(float v0, float v1) {
-    has_gap_ = v0 < v1;
+  void skip(Interval gap) {
+    has_gap_ = gap.lo < gap.hi;
     if (!has_gap_) return;
-    const Vec3f e0 = a_ + chord_ * v0, e1 = a_ + chord_ * v1;
+    const Vec3f e0 = a_ + chord_ * gap.lo, e1 = a_ + chord_ * gap.hi;
     for (int k = 0; k < 3; ++k) {
       gap_[k] = side(k, e0, sign_[k], false);
       gap_[3 + k] = side(k, e1, -sign_[k], false);

@@ -20,6 +20,11 @@ float dot_fma(const Vec3f& c, const Vec3f& q) {
   return std::fma(c.z, q.z, std::fma(c.y, q.y, c.x * q.x));
 }
 
+/// Where an edge crosses the fan's plane: β and t there, both times w = |g| + |g'| of the edge's vertices.
+struct Crossing {
+  float beta, t, w;
+};
+
 /// The single-precision coordinates of a triangle's vertices, |g| and its side apart.
 struct Corners {
   float g[3], beta[3], t[3];
@@ -35,6 +40,11 @@ struct Corners {
       t[i] = dot_fma(fan.t, q);
     }
   }
+  /// Of the edges from the odd vertex out: to the other vertex of lower, and of higher index.
+  Crossing lower_edge(int odd) const { return cross(odd == 0 ? 1 : 0, odd); }
+  Crossing higher_edge(int odd) const { return cross(odd == 2 ? 1 : 2, odd); }
+
+ private:
   /// Symmetric in the edge's vertices to the last bit: no fused multiply-add.
   Crossing cross(int i, int o) const {
     return {g[i] * beta[o] + g[o] * beta[i], g[i] * t[o] + g[o] * t[i], g[i] + g[o]};
@@ -120,15 +130,16 @@ LineFan make_fan(const Vec3d& x, const Vec3d& a, const Vec3d& b, double reach) {
   return fan;
 }
 
-Interval hidden_near_ends(const LineFan& fan, const Vec3f p[3], int odd, const Crossing& e1,
-                          const Crossing& e2) {
+Interval hidden_near_ends(const LineFan& fan, const Vec3f p[3], int odd) {
   Vec3d q[3];
   for (int i = 0; i < 3; ++i) q[i] = Vec3d(p[i]) - fan.x_exact;
   // The fan on one side of the triangle's plane: a surface just below x, as every x has one.
   const Vec3d normal = (q[1] - q[0]).cross(q[2] - q[0]);
   const double h = normal.dot(q[0]), a = normal.dot(fan.a) - h, b = normal.dot(fan.b) - h;
   if ((h < 0 && a > 0 && b > 0) || (h > 0 && a < 0 && b < 0)) return kHidesNothing;
-  End ends[2] = {end_of(fan, e1, q[odd == 0 ? 1 : 0], q[odd]), end_of(fan, e2, q[odd == 2 ? 1 : 2], q[odd])};
+  const Corners corners(fan, p);
+  End ends[2] = {end_of(fan, corners.lower_edge(odd), q[odd == 0 ? 1 : 0], q[odd]),
+                 end_of(fan, corners.higher_edge(odd), q[odd == 2 ? 1 : 2], q[odd])};
   if ((ends[0].behind && ends[1].behind) || (ends[0].beyond && ends[1].beyond)) return kHidesNothing;
   for (int i = 0; i < 2; ++i) {
     End& end = ends[i];
@@ -155,7 +166,7 @@ Interval hidden_by_triangle(const LineFan& fan, const Vec3f p[3]) {
   const bool differs1 = corners.below[0] != corners.below[1], differs2 = corners.below[0] != corners.below[2];
   if (!differs1 && !differs2) return kHidesNothing;
   const int odd = differs1 && differs2 ? 0 : differs1 ? 1 : 2;
-  const Crossing e1 = corners.cross(odd == 0 ? 1 : 0, odd), e2 = corners.cross(odd == 2 ? 1 : 2, odd);
+  const Crossing e1 = corners.lower_edge(odd), e2 = corners.higher_edge(odd);
   if ((behind(fan, e1) && behind(fan, e2)) || (beyond(fan, e1) && beyond(fan, e2))) return kHidesNothing;
   const bool front1 = in_front(fan, e1) && !beyond(fan, e1), front2 = in_front(fan, e2) && !beyond(fan, e2);
   if (front1 && front2) return ordered(e1.beta / e1.t, e2.beta / e2.t);
@@ -170,7 +181,7 @@ Interval hidden_by_triangle(const LineFan& fan, const Vec3f p[3]) {
       return ordered(front1 ? e1.beta / e1.t : e2.beta / e2.t, end);
     }
   }
-  return hidden_near_ends(fan, p, odd, e1, e2);
+  return hidden_near_ends(fan, p, odd);
 }
 
 }  // namespace penumbra

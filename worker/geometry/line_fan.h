@@ -25,7 +25,7 @@ struct LineFan {
   Vec3f x, g, beta, t;  ///< functionals of p - x
   float light = 0;      ///< t at which an occluder is no longer in front of the light
   float near = 0;       ///< |t| below this is decided in double precision (see make_fan)
-  float error = 0;      ///< bound of the rounding errors of a Crossing's beta and t
+  float error = 0;      ///< bound of the rounding errors of where an edge crosses the plane
 
   // Double precision: the same fan for the few edges that need it.
   Vec3d x_exact, a, b;  ///< a, b relative to x
@@ -37,19 +37,13 @@ struct LineFan {
 /// Fan of (x, x+a, x+b) in the coordinates of one tree. `reach`: no vertex is farther from x than this.
 LineFan make_fan(const Vec3d& x, const Vec3d& a, const Vec3d& b, double reach);
 
-/// Where an edge crosses the fan's plane: β and t there, both times w = |g| + |g'| of the edge's vertices.
-struct Crossing {
-  float beta, t, w;
-};
-
 /// What triangle p hides: v in [lo,hi], clamped to [0,1]; lo >= hi if nothing. Neighbours that share an
 /// edge answer with the same bits at that edge.
 Interval hidden_by_triangle(const LineFan& fan, const Vec3f p[3]);
 
 /// The part of hidden_by_triangle that needs double precision; all paths share it. `odd` is the vertex alone
-/// on its side of the plane; e1 and e2 are its edges to the vertex of lower and of higher index.
-Interval hidden_near_ends(const LineFan& fan, const Vec3f p[3], int odd, const Crossing& e1,
-                          const Crossing& e2);
+/// on its side of the plane.
+Interval hidden_near_ends(const LineFan& fan, const Vec3f p[3], int odd);
 
 constexpr Interval kHidesNothing{std::numeric_limits<float>::infinity(),
                                  -std::numeric_limits<float>::infinity()};

@@ -17,9 +17,6 @@ class LineWalk {
   void run(const LineQuery& query, IntervalSet& out) {
     query_ = &query;
     visible_.reset();
-    v0_ = 0;
-    v1_ = 1;
-    gap_lo_ = gap_hi_ = 0;
     widest_ = 0;
     const Vec3d x(query.x), a = Vec3d(query.a) - x, b = Vec3d(query.b) - x;
     const LineTree& frame = bvh_.world.nodes.empty() ? bvh_.instance_tree : bvh_.world;
@@ -30,12 +27,12 @@ class LineWalk {
       triangles(bvh_.world, fan, excluded_in(bvh_, query, kNone), workspace_.stack.data(),
                 workspace_.leaves.data());
     }
-    if (!bvh_.instance_tree.nodes.empty() && v0_ < v1_) placed_objects(x, a, b);
-    if (widest_ > 0) {
+    if (!bvh_.instance_tree.nodes.empty() && !visible_.empty()) placed_objects(x, a, b);
+    if (widest_ > 0 && occluder_world_) {
       workspace_.occluder_tree = bvh_.id;
       workspace_.occluder = occluder_;
     }
-    sorted(out);
+    for (int i = 0; i < visible_.size(); ++i) out.append(visible_[i].lo, visible_[i].hi);
   }
 
  private:
@@ -43,7 +40,7 @@ class LineWalk {
     const LineFan fan = make_fan(x, a, b, bvh_.instance_tree.reach(x));
     walk(bvh_.instance_tree, fan, workspace_.stack.data(), workspace_.leaves.data(),
          [&](const uint32_t* found, int count, uint32_t* stack, uint32_t* leaves) {
-           for (int i = 0; i < count && v0_ < v1_; ++i) {
+           for (int i = 0; i < count && !visible_.empty(); ++i) {
              const LineInstance& placed = bvh_.instances[found[i]];
              const LineTree& tree = bvh_.objects[placed.tree];
              Vec3d ox, oa, ob;
@@ -62,36 +59,26 @@ class LineWalk {
     const FanBlock fan_block(fan);
     const bool world = &tree == &bvh_.world;
     if (world && workspace_.occluder_tree == bvh_.id) {
-      test(fan_block, tree, workspace_.occluder, excluded, true);
-      if (!take_hidden()) return;
+      test(fan_block, tree, {&workspace_.occluder, 1}, excluded, visible_.hull());
+      if (visible_.empty()) return;
     }
     walk(tree, fan, stack_base, leaves_base, [&](const uint32_t* found, int count, uint32_t*, uint32_t*) {
-      for (int i = 0; i < count; ++i) {
-        test(fan_block, tree, found[i], excluded, world);
-        if (hidden_.full()) take_hidden();
-      }
-      take_hidden();
+      test(fan_block, tree, {found, static_cast<size_t>(count)}, excluded, visible_.hull());
     });
   }
 
-  void test(const FanBlock& fan_block, const LineTree& tree, uint32_t block, const Excluded& excluded,
-            bool world) {
-    counters_.triangles_tested += kWidth;
-    const float width = fan_block.hidden(tree.blocks[block], excluded, v0_, v1_, hidden_);
-    if (world && width > widest_) {
-      widest_ = width;
-      occluder_ = block;
+  /// Takes from the visible set what some blocks hide of it.
+  void test(const FanBlock& fan_block, const LineTree& tree, std::span<const uint32_t> blocks,
+            const Excluded& excluded, Interval hull) {
+    for (const uint32_t block : blocks) {
+      if (fan_block.hidden(tree.blocks[block], excluded, hull.lo, hull.hi, hidden_, widest_)) {
+        occluder_ = block;
+        occluder_world_ = &tree == &bvh_.world;
+      }
     }
-  }
-
-  /// Takes what was found from the visible set; false if nothing is left of it.
-  bool take_hidden() {
-    if (!hidden_.empty() && hidden_.flush(visible_)) {
-      std::tie(v0_, v1_) = visible_.hull();
-      if (v0_ < v1_) std::tie(gap_lo_, gap_hi_) = visible_.widest_gap();
-      ++version_;
-    }
-    return v0_ < v1_;
+    counters_.triangles_tested += kWidth * blocks.size();
+    fan_block.settle(hidden_, hull.lo, hull.hi);
+    if (!hidden_.empty() && hidden_.flush(visible_)) ++version_;
   }
 
   /// Visits the leaves that the visible part of the fan meets. `use` may narrow it, and gets the free parts
@@ -100,8 +87,8 @@ class LineWalk {
   void walk(const LineTree& tree, const LineFan& fan, uint32_t* stack_base, uint32_t* leaves, Use use) {
     FanBoxes boxes(fan, tree);
     uint64_t version = version_;
-    boxes.narrow(v0_, v1_);
-    boxes.skip(gap_lo_, gap_hi_);
+    boxes.narrow(visible_.hull());
+    boxes.skip(visible_.widest_gap());
     uint32_t* stack = stack_base;
     *stack++ = 0;
     while (stack != stack_base) {
@@ -115,26 +102,10 @@ class LineWalk {
       Simd::compress(leaves, found, node.child);
       use(leaves, std::popcount(found), stack, leaves + kWidth);
       if (version == version_) continue;
-      if (!(v0_ < v1_)) return;
+      if (visible_.empty()) return;
       version = version_;
-      boxes.narrow(v0_, v1_);
-      boxes.skip(gap_lo_, gap_hi_);
-    }
-  }
-
-  void sorted(IntervalSet& out) const {
-    if (!(v0_ < v1_)) return;
-    // A handful: the lowest not yet written, again and again.
-    float after = -1;
-    for (;;) {
-      Interval next{2, 2};
-      for (int i = 0; i < visible_.lanes(); ++i) {
-        const Interval lane = visible_.lane(i);
-        if (lane.lo < lane.hi && lane.lo > after && lane.lo < next.lo) next = lane;
-      }
-      if (next.lo == 2) return;
-      out.append(next.lo, next.hi);
-      after = next.lo;
+      boxes.narrow(visible_.hull());
+      boxes.skip(visible_.widest_gap());
     }
   }
 
@@ -144,10 +115,10 @@ class LineWalk {
   const LineQuery* query_ = nullptr;
   VisibleSet visible_;
   HiddenIntervals hidden_;
-  float v0_ = 0, v1_ = 1, gap_lo_ = 0, gap_hi_ = 0;
   uint64_t version_ = 0;  ///< of the visible set
   float widest_ = 0;      ///< what the best occluder of this query hides
   uint32_t occluder_ = 0;
+  bool occluder_world_ = false;
 };
 
 void visible_vector(const LineBvh& bvh, std::span<const LineQuery> queries, std::vector<IntervalSet>& out,
