@@ -1,6 +1,7 @@
 #include "worker/materials/material.h"
 
 #include "proto/status.h"
+#include "scenes/worn_materials.h"
 #include "worker/materials/bump.h"
 #include "worker/materials/material_builder.h"
 #include "worker/materials/material_kinds.h"
@@ -57,7 +58,17 @@ class Bounds {
   std::vector<LobeBounds> bounds_;
 };
 
-/// Textures that the materials' parameters name, and those that these name. A texture names earlier ones.
+/// Materials that something wears, as indices; the others are not built, load nothing and warn of nothing.
+std::vector<int> worn_indices(const SceneDescription& description) {
+  std::vector<int> indices;
+  for (const MaterialEntity* entity : worn_materials(description)) {
+    indices.push_back(static_cast<int>(entity - description.materials.data()));
+  }
+  return indices;
+}
+
+/// Textures that the worn materials' parameters name, and those that these name. A texture names earlier
+/// ones only.
 std::vector<bool> used_by(const SceneDescription& description) {
   std::vector<bool> used(description.textures.size());
   const auto mark = [&](const Params& params) {
@@ -65,7 +76,7 @@ std::vector<bool> used_by(const SceneDescription& description) {
       if (param.type == "texture" && param.texture >= 0) used[param.texture] = true;
     }
   };
-  for (const MaterialEntity& entity : description.materials) mark(entity.params);
+  for (const MaterialEntity* entity : worn_materials(description)) mark(entity->params);
   for (size_t i = used.size(); i-- > 0;) {
     if (used[i]) mark(description.textures[i].params);
   }
@@ -98,9 +109,9 @@ absl::StatusOr<Materials> Materials::build(const SceneDescription& description, 
   Materials result;
   Parts& parts = *result.parts_;
   MaterialBuilder builder(description, files, strict, warnings);
-  for (const MaterialEntity& entity : description.materials) {
-    ASSIGN_OR_RETURN(Material material, builder.build(entity));
-    parts.materials.push_back(std::move(material));
+  parts.materials.resize(description.materials.size());
+  for (const int i : worn_indices(description)) {
+    ASSIGN_OR_RETURN(parts.materials[i], builder.build(description.materials[i]));
   }
   ASSIGN_OR_RETURN(parts.bounds, Bounds(parts.materials, description).all());
   parts.used_textures = used_by(description);

@@ -82,14 +82,11 @@ absl::StatusOr<Roughness> MaterialBuilder::roughness(const MaterialEntity& entit
   return out;
 }
 
-// v3 knows the materials made so far; v4 all of them, in any order.
+// Of several of one name the last counts, wherever the mix stands: v4's rule, and v3's for scenes that do
+// not define a name twice.
 absl::StatusOr<int> MaterialBuilder::material_named(const MaterialEntity& entity, const std::string& name) {
   const auto& all = description_.materials;
-  const auto self = static_cast<size_t>(&entity - all.data());
-  for (size_t i = self; i-- > 0;) {
-    if (!name.empty() && all[i].name == name) return static_cast<int>(i);
-  }
-  for (size_t i = self + 1; i < all.size(); ++i) {
+  for (size_t i = all.size(); i-- > 0;) {
     if (!name.empty() && all[i].name == name) return static_cast<int>(i);
   }
   RETURN_IF_ERROR(complain(entity.loc, fmt::format("no material is named '{}': matte instead", name)));
