@@ -10,9 +10,12 @@
 namespace penumbra {
 namespace {
 
-/// Uniform integer in [0,size) from 32 random bits, size <= 2^32 (Lemire's multiplication).
-uint64_t scale_down(uint32_t bits, uint64_t size) {
-  return (bits * size) >> 32;
+// A jittered place in the last stratum may round up to 1.
+constexpr double kBelowOne = 1 - 0x1p-53;
+
+/// Uniform integer in [0,size) from 32 random bits (a multiplication instead of a remainder).
+uint32_t scale_down(uint32_t bits, uint32_t size) {
+  return static_cast<uint32_t>((uint64_t{bits} * size) >> 32);
 }
 
 uint32_t reverse_bits(uint32_t x) {
@@ -53,39 +56,38 @@ double to_unit(uint32_t leading, uint64_t trailing) {
 
 }  // namespace
 
-uint64_t permute(uint64_t i, uint64_t size, uint64_t seed) {
+uint32_t permute(uint32_t i, uint32_t size, uint64_t seed) {
   if (size == 1) return 0;
-  const uint64_t mask = std::bit_ceil(size) - 1;
+  const uint32_t mask = ~uint32_t{0} >> std::countl_zero(size - 1);
   const int half = (std::bit_width(mask) + 1) / 2;
-  const uint64_t adds = mix64(seed), factors = mix64(seed ^ 0x2545f4914f6cdd1du);
+  const uint64_t adds = seed, factors = std::rotl(seed, 8);
   // A bijection of [0, 2^k), repeated until it is back inside [0,size): still a bijection there. Each round
   // takes other bits of the keys, for where k is small only the lowest few of a key do anything.
   do {
     for (int round = 0; round < 64; round += 16) {
-      i = ((i + (adds >> round)) * ((factors >> round) | 1)) & mask;
+      i = ((i + static_cast<uint32_t>(adds >> round)) * (static_cast<uint32_t>(factors >> round) | 1)) & mask;
       i ^= i >> half;
     }
   } while (i >= size);
   // The rotation makes the image of every i uniform over the seeds, even for sizes so small that the
   // bijections above are far from all permutations.
-  i += scale_down(static_cast<uint32_t>(seed >> 32), size);
-  return i < size ? i : i - size;
+  const uint32_t rotation = scale_down(static_cast<uint32_t>(mix64(seed)), size), room = size - rotation;
+  return i < room ? i + rotation : i - room;
 }
 
-Vec2d correlated_multi_jitter(uint64_t stratum, uint64_t size, uint64_t seed) {
-  const uint64_t columns = static_cast<uint64_t>(std::sqrt(static_cast<double>(size)));
-  const uint64_t rows = (size + columns - 1) / columns;
-  const uint64_t column = permute(stratum % columns, columns, child_key(seed, 0));
-  const uint64_t row = permute(stratum / columns, rows, child_key(seed, 1));
-  const uint64_t own = child_key(seed, 4 + 2 * stratum);
-  const double jx = uniform(own), jy = uniform(mix64(own));
-  // Products of integers below 2^53 with jitters below 1, rounded down where they would round up to 1.
+Vec2d correlated_multi_jitter(uint32_t stratum, uint32_t size, uint64_t seed) {
+  const uint32_t columns = static_cast<uint32_t>(std::sqrt(static_cast<double>(size)));
+  const uint32_t rows = size / columns + (size % columns != 0);
+  const uint32_t column = permute(stratum % columns, columns, child_key(seed, 0));
+  const uint32_t row = permute(stratum / columns, rows, child_key(seed, 1));
+  const uint64_t own = child_key(seed, uint64_t{4} + stratum);
+  const double jx = static_cast<uint32_t>(own) * 0x1p-32, jy = (own >> 32) * 0x1p-32;
   const double x = (column + (row + jx) / rows) / columns, y = (stratum + jy) / size;
-  return {std::min(x, 1 - 0x1p-53), std::min(y, 1 - 0x1p-53)};
+  return {std::min(x, kBelowOne), std::min(y, kBelowOne)};
 }
 
-double jitter(uint64_t stratum, uint64_t size, uint64_t seed) {
-  return std::min((stratum + uniform(child_key(seed, stratum))) / size, 1 - 0x1p-53);
+double jitter(uint32_t stratum, uint32_t size, uint64_t seed) {
+  return std::min((stratum + uniform(child_key(seed, stratum))) / size, kBelowOne);
 }
 
 Vec2d scrambled_sobol(uint32_t index, uint64_t seed) {

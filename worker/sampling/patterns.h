@@ -7,17 +7,17 @@
 
 namespace penumbra {
 
-/// Image of i under a pseudo-random permutation of [0,size), 0 <= i < size <= 2^32. Over the seeds the
+/// Image of i under a pseudo-random permutation of [0,size), i < size. Over the seeds the
 /// image of each i is uniform. `seed` (here and below): well mixed bits, as of child_key().
-uint64_t permute(uint64_t i, uint64_t size, uint64_t seed);
+uint32_t permute(uint32_t i, uint32_t size, uint64_t seed);
 
 /// Point `stratum` of `size` correlated multi-jittered points (Kensler 2013, §«arbitrary sizes»): one point
 /// in each of `size` rows, in each of about as many columns, and in each cell of a grid about as fine as a
 /// square one. `stratum` numbers the rows: permute it first if the order of the samples matters.
-Vec2d correlated_multi_jitter(uint64_t stratum, uint64_t size, uint64_t seed);
+Vec2d correlated_multi_jitter(uint32_t stratum, uint32_t size, uint64_t seed);
 
 /// One of `size` jittered points of [0,1), in stratum `stratum`.
-double jitter(uint64_t stratum, uint64_t size, uint64_t seed);
+double jitter(uint32_t stratum, uint32_t size, uint64_t seed);
 
 /// Point `index` of an Owen-scrambled Sobol' (0,2)-sequence in shuffled order (Burley 2020): any aligned
 /// block of 2^k indices is a (0,k,2)-net. Repeats after 2^32 points.

@@ -7,6 +7,9 @@
 namespace penumbra {
 namespace {
 
+// Patterns count the samples of a strategy in a group in 32 bits.
+constexpr int64_t kMostSamples = (int64_t{1} << 32) - 1;
+
 // What a stream of numbers is for; part of its key.
 enum class Use : uint32_t { kFilm, kLens, kTime, kLight, kChoice, kSelect };
 
@@ -18,9 +21,9 @@ uint64_t stream_key(uint64_t key, Use use, uint64_t a = 0, uint64_t b = 0) {
 /// Sample i of n in pass p of g passes, as one of n·g strata such that the n samples of a pass fall into n
 /// different blocks of g neighbours, and the g passes of a block into different members of it. For every
 /// pass i -> block is a bijection, for every block p -> member is one: together one of all n·g.
-uint64_t nested_stratum(uint64_t p, uint64_t g, uint64_t i, uint64_t n, uint64_t seed) {
-  const uint64_t block = n == 1 ? 0 : permute(i, n, child_key(seed, 2 * p));
-  const uint64_t member = g == 1 ? 0 : permute(p, g, child_key(seed, 2 * block + 1));
+uint32_t nested_stratum(uint32_t p, uint32_t g, uint32_t i, uint32_t n, uint64_t seed) {
+  const uint32_t block = n == 1 ? 0 : permute(i, n, child_key(seed, 2 * uint64_t{p}));
+  const uint32_t member = g == 1 ? 0 : permute(p, g, child_key(seed, 2 * uint64_t{block} + 1));
   return block * g + member;
 }
 
@@ -29,40 +32,44 @@ uint64_t nested_stratum(uint64_t p, uint64_t g, uint64_t i, uint64_t n, uint64_t
 PassSampler::PassSampler(SamplerKind kind, uint64_t seed, uint32_t mix, TaskKind stage, uint32_t pixel,
                          int64_t pass, int64_t group)
     : kind_(kind) {
-  PENUMBRA_CHECK(pass >= 0 && group >= 1 && group <= int64_t{1} << 32);
-  group_size_ = static_cast<uint64_t>(group);
-  pass_in_group_ = static_cast<uint64_t>(pass) % group_size_;
-  const uint64_t group_index = static_cast<uint64_t>(pass) / group_size_;
+  PENUMBRA_CHECK(pass >= 0 && group >= 1 && group <= kMostSamples);
+  group_size_ = static_cast<uint32_t>(group);
+  pass_in_group_ = static_cast<uint32_t>(pass % group);
+  const uint64_t group_index = static_cast<uint64_t>(pass / group);
   const uint64_t stage_bit = stage == TaskKind::kPilot ? 1 : 0;
   const Random4 r = philox(seed, uint64_t{pixel} << 32 | mix, group_index << 1 | stage_bit);
   key_ = uint64_t{r.x[1]} << 32 | r.x[0];
 }
 
-Vec2d PassSampler::square(uint64_t stream, uint64_t i, uint64_t n) const {
-  const uint64_t index = pass_in_group_ * n + i;
+uint32_t PassSampler::samples_of_group(int i, int n) const {
+  PENUMBRA_CHECK(0 <= i && i < n && int64_t{group_size_} * n <= kMostSamples);
+  return group_size_ * static_cast<uint32_t>(n);
+}
+
+Vec2d PassSampler::square(uint64_t stream, int i, int n) const {
+  const uint32_t size = samples_of_group(i, n), index = pass_in_group_ * n + i;
   switch (kind_) {
     case SamplerKind::kIndependent: {
       const uint64_t bits = child_key(stream, index);
       return {uniform(bits), uniform(mix64(bits ^ stream))};
     }
     case SamplerKind::kStratified:
-      return correlated_multi_jitter(nested_stratum(pass_in_group_, group_size_, i, n, stream),
-                                     group_size_ * n, stream);
+      return correlated_multi_jitter(nested_stratum(pass_in_group_, group_size_, i, n, stream), size, stream);
     case SamplerKind::kSobol:
-      return scrambled_sobol(static_cast<uint32_t>(index), stream);
+      return scrambled_sobol(index, stream);
   }
   PENUMBRA_CHECK(false);
 }
 
-double PassSampler::segment(uint64_t stream, uint64_t i, uint64_t n) const {
-  const uint64_t index = pass_in_group_ * n + i;
+double PassSampler::segment(uint64_t stream, int i, int n) const {
+  const uint32_t size = samples_of_group(i, n), index = pass_in_group_ * n + i;
   switch (kind_) {
     case SamplerKind::kIndependent:
       return uniform(child_key(stream, index));
     case SamplerKind::kStratified:
-      return jitter(nested_stratum(pass_in_group_, group_size_, i, n, stream), group_size_ * n, stream);
+      return jitter(nested_stratum(pass_in_group_, group_size_, i, n, stream), size, stream);
     case SamplerKind::kSobol:
-      return scrambled_van_der_corput(static_cast<uint32_t>(index), stream);
+      return scrambled_van_der_corput(index, stream);
   }
   PENUMBRA_CHECK(false);
 }
@@ -87,13 +94,11 @@ uint64_t light_key(uint64_t key, Use use, int depth, uint32_t light, int slot) {
 }  // namespace
 
 Vec2d PassSampler::light(int depth, uint32_t light, int slot, int i, int n) const {
-  return square(light_key(key_, Use::kLight, depth, light, slot), static_cast<uint64_t>(i),
-                static_cast<uint64_t>(n));
+  return square(light_key(key_, Use::kLight, depth, light, slot), i, n);
 }
 
 double PassSampler::choice(int depth, uint32_t light, int slot, int i, int n) const {
-  return segment(light_key(key_, Use::kChoice, depth, light, slot), static_cast<uint64_t>(i),
-                 static_cast<uint64_t>(n));
+  return segment(light_key(key_, Use::kChoice, depth, light, slot), i, n);
 }
 
 double PassSampler::select(int depth, int i) const {

@@ -19,11 +19,11 @@ inline double uniform(uint64_t bits) {
   return static_cast<double>(bits >> 11) * 0x1p-53;
 }
 
-/// Every random number of one pixel in one pass of one mix. Copy freely: 64 bytes, no state.
+/// Every random number of one pixel in one pass of one mix. Copy freely: 24 bytes, no state.
 class PassSampler {
  public:
-  /// `group`: passes per independently scrambled group, in [1, 2^32]; stratification spans a group, never
-  /// two. The patterns repeat after 2^32 samples of one strategy in one group.
+  /// `group`: passes per independently scrambled group (>= 1); stratification spans a group, never two. The
+  /// samples of one strategy in a group are fewer than 2^32.
   PassSampler(SamplerKind kind, uint64_t seed, uint32_t mix, TaskKind stage, uint32_t pixel, int64_t pass,
               int64_t group);
 
@@ -41,13 +41,15 @@ class PassSampler {
   double select(int depth, int i) const;
 
  private:
+  /// How many samples of n a pass the group has; i must be one of them.
+  uint32_t samples_of_group(int i, int n) const;
   /// Sample i of n of this pass, of a stream stratified over the passes of the group.
-  Vec2d square(uint64_t stream, uint64_t i, uint64_t n) const;
-  double segment(uint64_t stream, uint64_t i, uint64_t n) const;
+  Vec2d square(uint64_t stream, int i, int n) const;
+  double segment(uint64_t stream, int i, int n) const;
 
   SamplerKind kind_;
   uint64_t key_;  ///< of (seed, mix, stage, pixel, group)
-  uint64_t pass_in_group_, group_size_;
+  uint32_t pass_in_group_, group_size_;
 };
 
 }  // namespace penumbra

@@ -33,10 +33,10 @@ TEST(Uniform, NeverReachesOne) {
 }
 
 TEST(Permute, IsABijection) {
-  for (const uint64_t size : {1u, 2u, 3u, 4u, 5u, 7u, 8u, 12u, 16u, 17u, 100u, 255u, 256u, 257u, 1000u}) {
+  for (const uint32_t size : {1u, 2u, 3u, 4u, 5u, 7u, 8u, 12u, 16u, 17u, 100u, 255u, 256u, 257u, 1000u}) {
     for (uint64_t seed = 0; seed < 20; ++seed) {
-      std::set<uint64_t> images;
-      for (uint64_t i = 0; i < size; ++i) images.insert(permute(i, size, mix64(seed)));
+      std::set<uint32_t> images;
+      for (uint32_t i = 0; i < size; ++i) images.insert(permute(i, size, mix64(seed)));
       EXPECT_EQ(images.size(), size);
       EXPECT_LT(*images.rbegin(), size);
     }
@@ -45,8 +45,8 @@ TEST(Permute, IsABijection) {
 
 TEST(Permute, EveryImageIsUniformOverTheSeeds) {
   constexpr int kSeeds = 20000;
-  for (const uint64_t size : {2u, 3u, 5u, 6u, 7u, 12u}) {
-    for (const uint64_t i : {uint64_t{0}, size / 2, size - 1}) {
+  for (const uint32_t size : {2u, 3u, 5u, 6u, 7u, 12u}) {
+    for (const uint32_t i : {0u, size / 2, size - 1}) {
       std::vector<int> hits(size);
       for (uint64_t seed = 0; seed < kSeeds; ++seed) ++hits[permute(i, size, mix64(seed))];
       const double expected = static_cast<double>(kSeeds) / size, sigma = std::sqrt(expected);
@@ -78,10 +78,10 @@ size_t cells_hit(const std::vector<Vec2d>& points, uint64_t columns, uint64_t ro
 }
 
 TEST(CorrelatedMultiJitter, OnePointPerRowColumnAndCell) {
-  for (const uint64_t side : {1u, 2u, 3u, 4u, 8u, 10u}) {
+  for (const uint32_t side : {1u, 2u, 3u, 4u, 8u, 10u}) {
     for (uint64_t seed = 0; seed < 10; ++seed) {
       std::vector<Vec2d> points;
-      for (uint64_t i = 0; i < side * side; ++i)
+      for (uint32_t i = 0; i < side * side; ++i)
         points.push_back(correlated_multi_jitter(i, side * side, mix64(seed)));
       EXPECT_EQ(cells_hit(points, side * side, 1), side * side);
       EXPECT_EQ(cells_hit(points, 1, side * side), side * side);
@@ -91,9 +91,9 @@ TEST(CorrelatedMultiJitter, OnePointPerRowColumnAndCell) {
 }
 
 TEST(CorrelatedMultiJitter, AnySizeHasOnePointPerRow) {
-  for (const uint64_t size : {1u, 2u, 3u, 5u, 6u, 7u, 11u, 13u, 50u}) {
+  for (const uint32_t size : {1u, 2u, 3u, 5u, 6u, 7u, 11u, 13u, 50u}) {
     std::vector<Vec2d> points;
-    for (uint64_t i = 0; i < size; ++i) points.push_back(correlated_multi_jitter(i, size, mix64(size)));
+    for (uint32_t i = 0; i < size; ++i) points.push_back(correlated_multi_jitter(i, size, mix64(size)));
     EXPECT_EQ(cells_hit(points, 1, size), size);
   }
 }
@@ -127,7 +127,7 @@ TEST(Patterns, EveryPointIsUniformOverTheSeeds) {
     for (const int n : hits) chi2 += (n - expected) * (n - expected) / expected;
     EXPECT_LT(chi2, 63 + 5 * std::sqrt(2.0 * 63)) << name;
   };
-  for (const uint64_t size : {1u, 2u, 3u, 5u, 7u, 16u, 1000u}) {
+  for (const uint32_t size : {1u, 2u, 3u, 5u, 7u, 16u, 1000u}) {
     judge([&](uint64_t seed) { return correlated_multi_jitter(permute(0, size, seed), size, seed); },
           "first");
     judge([&](uint64_t seed) { return correlated_multi_jitter(permute(size - 1, size, seed), size, seed); },
