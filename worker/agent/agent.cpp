@@ -1,0 +1,252 @@
+#include "worker/agent/agent.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <new>
+
+#include "proto/convert.h"
+#include "proto/rpc_status.h"
+#include "worker/agent/identity.h"
+
+namespace penumbra {
+namespace {
+
+// The server may hold a Sync this long when there is nothing to say; news of our own break it off.
+constexpr uint32_t kWaitMilliseconds = 4000;
+// A call that takes longer than its wait and this is lost.
+constexpr int kCallSeconds = 10;
+// Between attempts to reach a server that is away.
+constexpr double kRetrySeconds = 0.2;
+
+double steady_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Errors that trying again cannot cure.
+bool is_refusal(const absl::Status& status) {
+  return absl::IsFailedPrecondition(status) || absl::IsInvalidArgument(status) ||
+         absl::IsUnauthenticated(status) || absl::IsPermissionDenied(status) || absl::IsUnimplemented(status);
+}
+
+}  // namespace
+
+Agent::Agent(AgentOptions options, const std::shared_ptr<grpc::Channel>& channel, BlobFolder cache,
+             const SceneLoader& loader)
+    : options_(std::move(options)),
+      stub_(v1::Worker::NewStub(channel)),
+      cache_(std::move(cache)),
+      blobs_(channel),
+      scenes_(blobs_, cache_, loader, options_.threads, options_.scenes),
+      // One to render and one to go on with, for each thread.
+      board_(2 * static_cast<uint32_t>(options_.threads)),
+      deadline_(std::numeric_limits<double>::infinity()) {}
+
+Agent::~Agent() {
+  (void)stop();
+}
+
+void Agent::start() {
+  for (int i = 0; i < options_.threads; ++i) render_threads_.emplace_back([this] { render_loop(); });
+  upload_thread_ = std::thread([this] { upload_loop(); });
+  sync_thread_ = std::thread([this] { sync_loop(); });
+}
+
+void Agent::drain(std::optional<double> grace_seconds) {
+  if (grace_seconds) deadline_ = std::min(deadline_.load(), steady_seconds() + *grace_seconds);
+  draining_ = true;
+  board_.drain();
+}
+
+absl::Status Agent::stop() {
+  stopping_ = true;
+  board_.close();
+  {
+    const std::lock_guard lock(upload_mutex_);
+    upload_ready_.notify_all();
+  }
+  if (sync_thread_.joinable()) sync_thread_.join();
+  if (upload_thread_.joinable()) upload_thread_.join();
+  for (std::thread& thread : render_threads_)
+    if (thread.joinable()) thread.join();
+  return refusal_;
+}
+
+/// While draining: whether the end has come. Past the deadline what is left is handed back first.
+bool Agent::drained() {
+  if (!draining_) return false;
+  if (steady_seconds() >= deadline_) {
+    board_.abandon();
+    // The server must hear of it, but not for longer than this.
+    constexpr double kLastWordSeconds = 1;
+    if (steady_seconds() >= deadline_ + kLastWordSeconds) return true;
+  }
+  return board_.empty();
+}
+
+void Agent::sync_loop() {
+  while (!stopping_) {
+    if (!sync_once()) break;
+    if (drained()) break;
+  }
+  ended_ = true;
+}
+
+/// One exchange. False: the server refuses this worker.
+bool Agent::sync_once() {
+  WorkerState state;
+  state.version = PENUMBRA_VERSION;
+  state.worker = options_.worker;
+  state.name = options_.name;
+  state.process_cpu_seconds = process_cpu_seconds();
+  board_.describe(state);
+  const bool reports = !state.completed.empty() || !state.failed.empty() || !state.loaded.empty();
+  // A draining worker looks at its clock between calls.
+  state.wait_milliseconds = reports ? 0 : draining_ ? 200 : kWaitMilliseconds;
+
+  const v1::SyncRequest request = to_proto(state);
+  v1::SyncResponse response;
+  grpc::ClientContext context;
+  context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(kCallSeconds) +
+                       std::chrono::milliseconds(state.wait_milliseconds));
+  std::atomic<bool> done{false};
+  grpc::Status rpc;
+  stub_->async()->Sync(&context, &request, &response, [&](grpc::Status result) {
+    rpc = std::move(result);
+    done = true;
+    board_.notify();
+  });
+  // Waits for the answer; news break off a call that is only waiting.
+  while (!done) {
+    const bool news = board_.wait_for_news_or(done, 0.5);
+    if (!done && (stopping_ || (news && state.wait_milliseconds > 0))) {
+      context.TryCancel();
+      while (!done) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+  return take_answer(from_grpc(rpc), response, state);
+}
+
+bool Agent::take_answer(const absl::Status& status, const v1::SyncResponse& response,
+                        const WorkerState& told) {
+  if (absl::IsCancelled(status)) return true;  // broken off by us
+  absl::StatusOr<DesiredState> desired = status;
+  if (status.ok()) desired = from_proto(response);
+  if (desired.ok()) {
+    if (!std::exchange(reachable_, true)) spdlog::info("the server is back");
+    for (auto& finished : board_.apply(*desired, told)) {
+      const std::lock_guard lock(upload_mutex_);
+      uploads_.push_back({nullptr, std::move(finished)});
+      upload_ready_.notify_one();
+    }
+    return true;
+  }
+  if (is_refusal(desired.status())) {
+    refusal_ = desired.status();
+    return false;
+  }
+  if (std::exchange(reachable_, false))
+    spdlog::warn("the server cannot be reached, trying again: {}", message_of(desired.status()));
+  pause(kRetrySeconds);
+  return true;
+}
+
+void Agent::pause(double seconds) {
+  const double end = steady_seconds() + seconds;
+  while (!stopping_ && steady_seconds() < end) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+}
+
+void Agent::render_loop() {
+  while (const std::shared_ptr<Assignment> assignment = board_.take()) {
+    absl::StatusOr<TaskOutcome> outcome = outcome_of(*assignment);
+    if (assignment->cancel || (outcome.ok() && outcome->cancelled)) {
+      board_.drop(*assignment);
+    } else if (!outcome.ok()) {
+      const bool scene_fault = absl::IsInvalidArgument(outcome.status());
+      spdlog::warn("job {} task {}: {}", assignment->lease.job, assignment->lease.task,
+                   message_of(outcome.status()));
+      board_.fail(*assignment, scene_fault ? TaskFailure::kBadInput : TaskFailure::kError,
+                  message_of(outcome.status()));
+    } else {
+      hand_in(assignment, *std::move(outcome));
+    }
+  }
+}
+
+absl::StatusOr<TaskOutcome> Agent::outcome_of(const Assignment& assignment) {
+  ASSIGN_OR_RETURN(const CachedScene cached,
+                   scenes_.get(*assignment.job, [&] { return assignment.cancel || stopping_; }));
+  LoadedScene loaded{assignment.lease.job, cached.report, {}};
+  for (size_t m = 0; m < assignment.job->mixes.size(); ++m)
+    for (std::string& text : cached.scene->substitutions(assignment.job->mixes[m]))
+      loaded.substitutions.push_back({static_cast<int>(m), std::move(text)});
+  board_.loaded(loaded);
+  try {
+    return cached.scene->render(*assignment.job, assignment.task, assignment.cancel);
+  } catch (const std::bad_alloc&) {
+    return absl::ResourceExhaustedError("out of memory while a tile was rendered (see --max-memory)");
+  } catch (const std::exception& error) {
+    return make_status(absl::StatusCode::kInternal, "while a tile was rendered: {}", error.what());
+  }
+}
+
+void Agent::hand_in(const std::shared_ptr<Assignment>& assignment, TaskOutcome outcome) {
+  auto finished = std::make_shared<Finished>();
+  finished->report.lease = assignment->lease;
+  finished->report.costs = std::move(outcome.costs);
+  if (assignment->task.kind == TaskKind::kPilot) {
+    board_.complete(*assignment, std::move(finished));
+    return;
+  }
+  finished->bytes = serialize(outcome.pixels);
+  const std::lock_guard lock(upload_mutex_);
+  uploads_.push_back({assignment, std::move(finished)});
+  upload_ready_.notify_one();
+}
+
+void Agent::upload_loop() {
+  while (!stopping_) {
+    ToUpload next;
+    {
+      std::unique_lock lock(upload_mutex_);
+      upload_ready_.wait(lock, [&] { return stopping_ || !uploads_.empty(); });
+      if (stopping_) return;
+      next = std::move(uploads_.front());
+      uploads_.pop_front();
+    }
+    upload(next);
+  }
+}
+
+/// Tries for as long as the server is away and the lease is ours.
+void Agent::upload(const ToUpload& item) {
+  Finished& finished = *item.finished;
+  if (finished.report.result.empty()) {
+    Sha256 hash;
+    hash.add(finished.bytes);
+    finished.report.result = hash.hex();
+  }
+  for (;;) {
+    const absl::Status status = blobs_.upload(finished.report.result, finished.bytes);
+    const bool again = absl::IsUnavailable(status) || absl::IsAborted(status) || absl::IsCancelled(status);
+    const bool cancelled = item.assignment && item.assignment->cancel;
+    if (stopping_) return;
+    if (!item.assignment) {
+      if (!again) return;
+    } else if (cancelled) {
+      board_.drop(*item.assignment);
+      return;
+    } else if (status.ok()) {
+      board_.complete(*item.assignment, item.finished);
+      return;
+    } else if (!again) {
+      board_.fail(*item.assignment, TaskFailure::kError, "uploading the result: " + message_of(status));
+      return;
+    }
+    pause(kRetrySeconds);
+  }
+}
+
+}  // namespace penumbra

@@ -1,0 +1,91 @@
+#pragma once
+// What this worker has to do and has done: the state that Sync tells, and what the answers change in it.
+// Threads meet here and nowhere else. Knows no network.
+#include <atomic>
+#include <condition_variable>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "proto/sync.h"
+
+namespace penumbra {
+
+/// A leased task in the hands of this worker.
+struct Assignment {
+  LeaseId lease;
+  TileTask task;
+  std::shared_ptr<const JobSpec> job;
+  std::atomic<bool> cancel{false};  ///< the lease is lost: stop rendering
+};
+
+/// A finished task with the bytes of its result, kept until the server acknowledges it.
+struct Finished {
+  CompletedTask report;
+  std::string bytes;  ///< of report.result; empty for a pilot
+};
+
+class TaskBoard {
+ public:
+  /// `wanted`: leases to hold while not draining.
+  explicit TaskBoard(uint32_t wanted) : wanted_(wanted) {}
+
+  // For the Sync loop.
+
+  /// Fills in what the board knows: reports, leases, jobs, wanted, draining.
+  void describe(WorkerState& state);
+  /// Takes the answer to `told`. Returns the results that the server wants again: it has lost their blobs.
+  std::vector<std::shared_ptr<Finished>> apply(const DesiredState& desired, const WorkerState& told);
+  /// True if there is something to report that describe() has not seen yet. Blocks up to `seconds`.
+  bool wait_for_news(double seconds);
+  /// As wait_for_news(), returning early when `done` is set (under notify()).
+  bool wait_for_news_or(const std::atomic<bool>& done, double seconds);
+  void notify();
+
+  // For the render threads.
+
+  /// The next task; blocks. Null when the board is closed.
+  std::shared_ptr<Assignment> take();
+  /// Rendered and, for a run task, uploaded.
+  void complete(const Assignment& assignment, std::shared_ptr<Finished> finished);
+  void fail(const Assignment& assignment, TaskFailure reason, std::string message);
+  /// The task was cancelled: nothing to report.
+  void drop(const Assignment& assignment);
+  /// Once per job; later calls do nothing.
+  void loaded(const LoadedScene& scene);
+
+  // For the end.
+
+  /// No new leases; tasks that have not begun are handed back.
+  void drain();
+  /// Cancels what is being rendered and hands it back.
+  void abandon();
+  /// Nothing held, nothing to report.
+  bool empty() const;
+  /// take() returns null from now on; what is held is cancelled.
+  void close();
+
+ private:
+  struct Held {
+    std::shared_ptr<Assignment> assignment;
+    bool begun = false;
+  };
+  void hand_back(const LeaseId& lease, std::string message);
+
+  mutable std::mutex mutex_;
+  std::condition_variable work_, news_cv_;
+  uint32_t wanted_;
+  bool draining_ = false, closed_ = false, news_ = true;
+  std::map<LeaseId, Held> held_;
+  std::map<LeaseId, std::shared_ptr<Finished>> completed_;
+  std::map<LeaseId, FailedTask> failed_;
+  std::map<JobId, std::shared_ptr<const JobSpec>> jobs_;
+  std::map<JobId, LoadedScene> loads_;  ///< not acknowledged
+  std::set<JobId> reported_loads_;
+};
+
+}  // namespace penumbra
