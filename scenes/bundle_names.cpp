@@ -5,6 +5,7 @@
 
 #include "proto/status.h"
 #include "scenes/diagnostics.h"
+#include "scenes/utf8.h"
 
 namespace penumbra {
 namespace {
@@ -25,24 +26,6 @@ bool is_reserved(std::string_view component) {
   if (component == "in" || component == "root") return true;
   return component.starts_with("up") && component.size() > 2 &&
          std::all_of(component.begin() + 2, component.end(), [](char c) { return c >= '0' && c <= '9'; });
-}
-
-/// Well-formed UTF-8 (RFC 3629: no overlong forms, surrogates or values above U+10FFFF).
-bool is_utf8(std::string_view text) {
-  for (size_t i = 0; i < text.size();) {
-    const auto lead = static_cast<unsigned char>(text[i++]);
-    if (lead < 0x80) continue;
-    const int more = lead >= 0xf0 ? 3 : lead >= 0xe0 ? 2 : 1;
-    if (lead < 0xc2 || lead > 0xf4 || text.size() - i < static_cast<size_t>(more)) return false;
-    const auto second = static_cast<unsigned char>(text[i]);
-    const unsigned least = lead == 0xe0 ? 0xa0 : lead == 0xf0 ? 0x90 : 0x80;
-    const unsigned most = lead == 0xed ? 0x9f : lead == 0xf4 ? 0x8f : 0xbf;
-    if (second < least || second > most) return false;
-    for (int k = 1; k < more; ++k)
-      if ((static_cast<unsigned char>(text[i + k]) & 0xc0) != 0x80) return false;
-    i += more;
-  }
-  return true;
 }
 
 }  // namespace

@@ -13,7 +13,8 @@ namespace penumbra {
 /// `file:line:column` of a location among these files.
 std::string place_in(const std::vector<std::string>& files, FileLoc loc);
 
-/// Text from a file as a message may show it: non-printing bytes as `\xNN`, cut after 40 characters.
+/// Text from a file as a message may show it: always UTF-8, bytes that do not print or are not UTF-8 as
+/// `\xNN`, cut after 160 bytes.
 std::string printable(std::string_view text);
 
 struct Diagnostics {

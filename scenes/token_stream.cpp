@@ -9,7 +9,7 @@ constexpr size_t kDeepestInclude = 64;
 // Files that include one another twice each double the text at every level; a scene of such files is an
 // attack or a mistake. Repeating a file instead of instancing it stays possible up to here.
 constexpr uint64_t kMostRepeatedBytes = uint64_t{1} << 30;
-constexpr uint64_t kCostOfOneInclude = 256;  // so that empty files count too
+constexpr uint64_t kCostOfOneInclude = 4096;  // finding and entering a file, in bytes lexed
 
 }  // namespace
 

@@ -1,5 +1,7 @@
 #include "scenes/transforms.h"
 
+#include <ImathMatrixAlgo.h>
+
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -61,18 +63,23 @@ bool is_finite(const Matrix& m) {
 }
 
 bool is_singular(const Matrix& m) {
-  Vec3d row[3];
-  for (int i = 0; i < 3; ++i) {
-    row[i] = Vec3d(m[i][0], m[i][1], m[i][2]);
-    const double length = row[i].length();
-    if (!(length > 0) || !std::isfinite(length)) return true;
-    row[i] /= length;
+  Imath::M33d linear(m[0][0], m[0][1], m[0][2], m[1][0], m[1][1], m[1][2], m[2][0], m[2][1], m[2][2]);
+  // A scale along an axis, before or after a rotation, is no defect however strong it is: rows and columns
+  // are first brought to length 1. What is left is judged by its condition.
+  for (const bool by_rows : {true, false}) {
+    if (!by_rows) linear.transpose();
+    for (int i = 0; i < 3; ++i) {
+      const double length = Vec3d(linear[i][0], linear[i][1], linear[i][2]).length();
+      if (!(length > 0) || !std::isfinite(length)) return true;
+      for (int k = 0; k < 3; ++k) linear[i][k] /= length;
+    }
   }
-  // The rows' lengths say nothing about singularity (a scale of 1e-8 along z is fine); with unit rows the
-  // determinant is the volume of their parallelepiped, 1 where they are orthogonal. It is computed to
-  // about 10 roundings of terms <= 1, and entries are products of a few transforms, each rounding once.
+  Imath::M33d left, right;
+  Vec3d singular_values;
+  Imath::jacobiSVD(linear, left, singular_values, right);
+  // Entries are sums of products of a few transforms, each rounding in double.
   constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
-  return !(std::abs(row[0].dot(row[1].cross(row[2]))) > kRounding);
+  return !(std::abs(singular_values[2]) > kRounding * singular_values[0]);
 }
 
 std::optional<Matrix> as_affine(const Matrix& m) {
