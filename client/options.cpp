@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 
+#include "film/film_image.h"
 #include "proto/status.h"
 
 namespace penumbra {

@@ -1,5 +1,6 @@
 #include "client/run_job.h"
 
+#include <algorithm>
 #include <thread>
 
 #include "client/exit_code.h"
@@ -16,6 +17,18 @@ absl::Status failure_of(const JobStatus& status) {
   return make_status(
       code, "{}",
       status.message.empty() ? std::string("the job ") + std::string(name_of(status.state)) : status.message);
+}
+
+/// What the workers found in the scene that the client's own reading did not.
+void tell_new_warnings(const Json& run, const std::vector<std::string>& told, Progress& progress) {
+  constexpr int kMostLines = 20;
+  int lines = 0;
+  for (const Json& warning : run["warnings"]) {
+    const auto text = warning.get<std::string>();
+    if (std::find(told.begin(), told.end(), text) != told.end()) continue;
+    if (++lines <= kMostLines) progress.note("warning: " + text);
+  }
+  if (lines > kMostLines) progress.note(fmt::format("{} more warnings in run.json", lines - kMostLines));
 }
 
 }  // namespace
@@ -70,6 +83,7 @@ absl::StatusOr<FinishedRun> run_job(Backend& backend, const Submission& submissi
     return failure_of(finished.last);
   }
   ASSIGN_OR_RETURN(finished.run, write_outcome(server, job, folder, !done, std::stop_token()));
+  tell_new_warnings(finished.run, submission.warnings, progress);
   if (!done && !finished.interrupted) return failure_of(finished.last);
   return finished;
 }

@@ -1,9 +1,11 @@
 #pragma once
 // A job from submission to the files it leaves: what render and replay share.
+#include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
 
+#include "client/job_json.h"
 #include "client/local_cluster.h"
 #include "client/options.h"
 #include "client/server.h"

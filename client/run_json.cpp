@@ -26,11 +26,11 @@ Json budget_ratio(const RunSummary& summary, const MixSummary& mix) {
 Json timeline_json(const MixSummary& mix, const MixRecord& record) {
   Json timeline = Json::array();
   for (size_t i = 0; i < mix.checkpoints.size(); ++i) {
-    const std::optional<double> relmse =
-        i < record.checkpoint_relmse.size() ? record.checkpoint_relmse[i] : std::nullopt;
+    Json relmse;
+    if (i < record.checkpoint_relmse.size()) relmse = or_null(record.checkpoint_relmse[i]);
     timeline.push_back({{"cpu_seconds", mix.checkpoints[i].cpu_seconds},
                         {"passes", mix.checkpoints[i].passes},
-                        {"relmse", or_null(relmse)}});
+                        {"relmse", relmse}});
   }
   return timeline;
 }

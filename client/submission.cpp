@@ -2,17 +2,25 @@
 
 #include "client/outcome.h"
 #include "proto/status.h"
+#include "scenes/needs.h"
 #include "scenes/parser.h"
 
 namespace penumbra {
+
+std::vector<std::string> warnings_of(const SceneDescription& scene, const SceneDefaults& defaults) {
+  std::vector<std::string> warnings = scene.warnings;
+  const std::vector<std::string> left_out = unsupported(scene);
+  warnings.insert(warnings.end(), left_out.begin(), left_out.end());
+  warnings.insert(warnings.end(), defaults.notes.begin(), defaults.notes.end());
+  return warnings;
+}
 
 absl::StatusOr<Submission> prepare(const JobOptions& options) {
   ASSIGN_OR_RETURN(const SceneDescription scene, parse_scene_file(options.scene));
   ASSIGN_OR_RETURN(const SceneDefaults defaults, scene_defaults(scene));
   Submission submission;
   ASSIGN_OR_RETURN(submission.spec, make_job(options, defaults));
-  submission.warnings = scene.warnings;
-  submission.warnings.insert(submission.warnings.end(), defaults.notes.begin(), defaults.notes.end());
+  submission.warnings = warnings_of(scene, defaults);
   if (submission.spec.strict && !submission.warnings.empty())
     return invalid_input("{} (--strict)", submission.warnings[0]);
   if (!submission.spec.reference.empty()) RETURN_IF_ERROR(read_reference(submission.spec).status());

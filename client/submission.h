@@ -9,10 +9,14 @@
 
 namespace penumbra {
 
+/// What is to be said about a scene before it is rendered: of its text, of what is read but not rendered,
+/// of its defaults.
+std::vector<std::string> warnings_of(const SceneDescription& scene, const SceneDefaults& defaults);
+
 struct Submission {
   JobSpec spec;
   LocalBundle bundle;
-  std::vector<std::string> warnings;  ///< of the text and of its defaults
+  std::vector<std::string> warnings;
 };
 
 /// Parses the scene, decides the job, checks the reference, collects the files: everything that can be
