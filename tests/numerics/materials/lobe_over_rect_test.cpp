@@ -38,11 +38,12 @@ struct GaussLegendre {
 };
 
 /// ∫∫ over the unit square, split in four until a 12×12 rule agrees with its four parts; the parts are then
-/// better than the difference by many orders.
+/// better than the difference by many orders. Squares at the peak are split down to 2⁻¹⁴ in any case:
+/// a peak between the nodes is not seen.
 template <class F>
 class Quadrature {
  public:
-  explicit Quadrature(F f) : f_(f) {}
+  Quadrature(F f, const Vec2d& peak) : f_(f), peak_(peak) {}
   double operator()(double tolerance) { return refine(0, 0, 1, rule(0, 0, 1), tolerance, 0); }
 
  private:
@@ -55,19 +56,30 @@ class Quadrature {
     }
     return sum * size * size;
   }
+  bool near_peak(double x, double y, double size) const {
+    return std::abs(peak_.x - (x + size / 2)) <= size && std::abs(peak_.y - (y + size / 2)) <= size;
+  }
   double refine(double x, double y, double size, double whole, double tolerance, int depth) {
     const double h = size / 2;
     const std::array<double, 4> parts = {rule(x, y, h), rule(x + h, y, h), rule(x, y + h, h), rule(x + h, y + h, h)};
     const double sum = parts[0] + parts[1] + parts[2] + parts[3];
-    // The first levels are always split: a peak between the nodes of a coarse rule is not seen by it.
-    if (depth >= 4 && (std::abs(sum - whole) <= tolerance || depth == 24)) return sum;
+    const bool settled = std::abs(sum - whole) <= tolerance && !(depth < 14 && near_peak(x, y, size));
+    if (depth >= 3 && (settled || depth == 24)) return sum;
     double total = 0;
     for (int k = 0; k < 4; ++k) total += refine(x + h * (k & 1), y + h * (k >> 1), h, parts[k], tolerance, depth + 1);
     return total;
   }
   F f_;
+  Vec2d peak_;
   GaussLegendre<12> gauss_;
 };
+
+/// Where the mirror direction of wo meets the rectangle's plane, as fractions of the (orthogonal) edges.
+Vec2d mirror_point(const Vec3d& wo, const Vec3d& s, const Vec3d& ex, const Vec3d& ey) {
+  const Vec3d r(-wo.x, -wo.y, wo.z), n = ex % ey;
+  const Vec3d p = r * ((s ^ n) / (r ^ n)) - s;
+  return {(p ^ ex) / ex.length2(), (p ^ ey) / ey.length2()};
+}
 
 double lobe_value(const numerics::Row& row, const Vec3d& wo, const Vec3d& wi) {
   const double parameter = row.single("param");
@@ -88,7 +100,7 @@ double over_rectangle(const numerics::Row& row, double tolerance) {
     if (wi.z <= 0) return 0.0;
     return lobe_value(row, wo, wi) * wi.z * std::abs(wi ^ area) / r2;
   };
-  return Quadrature(integrand)(tolerance);
+  return Quadrature(integrand, mirror_point(wo, s, ex, ey))(tolerance);
 }
 
 TEST(LobeOverRectangle, QuadratureOfTheProductsOwnFunctionsMeetsTheBattery) {

@@ -99,7 +99,7 @@ struct ChiSquare {
 /// than 8 samples are pooled.
 inline ChiSquare chi_square(const Sampler& sample, const Density& density, const PolarMap& map, int samples,
                             unsigned seed) {
-  constexpr int kW = 16, kV = 16;
+  constexpr int kW = 24, kV = 24;
   std::vector<double> counts(kW * kV + 1), expected(kW * kV + 1);
   std::mt19937_64 generator(seed);
   std::uniform_real_distribution<double> uniform(0, 1);

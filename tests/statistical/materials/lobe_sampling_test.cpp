@@ -28,17 +28,18 @@ std::vector<LobeCase> lobe_cases() {
   for (const auto& [ax, ay] : alphas) {
     const TrowbridgeReitz d{ax, ay};
     const std::string suffix = "_" + std::to_string(int(ax * 1000)) + "_" + std::to_string(int(ay * 1000));
-    // Not the roughness itself: the horizon, where the density jumps, must not run along cells' borders.
-    const double spread = 0.83 * std::max(ax, ay);
+    const double spread = std::max(ax, ay);
     cases.push_back({"MicrofacetReflection" + suffix, MicrofacetReflection{white, d, FresnelNone{}}, spread});
     cases.push_back({"MicrofacetTransmission" + suffix, MicrofacetTransmission{white, d, 1, 1.5}, spread});
-    cases.push_back({"FresnelBlend" + suffix, FresnelBlend{Rgb(0.5f), Rgb(0.1f), d}, std::max(0.1, spread)});
+    cases.push_back({"FresnelBlend" + suffix, FresnelBlend{Rgb(0.5f), Rgb(0.1f), d}, spread});
   }
   return cases;
 }
 
-/// The direction about which the lobe lies.
-Vec3d lobe_axis(const Lobe& lobe, const Vec3d& wo) {
+/// Wide lobes in cells about the normal, so that the horizon, where their densities jump, is a border of
+/// cells; narrow ones in cells about their peak.
+Vec3d cells_axis(const Lobe& lobe, const Vec3d& wo, double spread) {
+  if (spread >= 0.1) return {0, 0, 1};
   if (const auto* t = std::get_if<MicrofacetTransmission>(&lobe)) {
     const double eta = wo.z > 0 ? t->eta_above / t->eta_below : t->eta_below / t->eta_above;
     const double sin2 = eta * eta * (wo.x * wo.x + wo.y * wo.y);
@@ -60,13 +61,13 @@ TEST_P(LobeSampling, SamplesFollowTheDensity) {
     std::visit(
         [&](const auto& lobe) {
           if constexpr (!std::decay_t<decltype(lobe)>::kSpecular) {
+            const PolarMap map(cells_axis(c.lobe, wo, c.spread), c.spread >= 0.1 ? 1 : c.spread);
             const auto result = statistical::chi_square(
                 [&](const Vec2d& u, double) { return sample(lobe, wo, u); },
-                [&](const Vec3d& wi) { return pdf(lobe, wo, wi); }, PolarMap(lobe_axis(c.lobe, wo), c.spread), 100000,
-                1234);
+                [&](const Vec3d& wi) { return pdf(lobe, wo, wi); }, map, 100000, 1234);
             EXPECT_GT(result.p_value, threshold) << "theta " << theta << " total " << result.total;
-            EXPECT_LE(result.total, 1 + 1e-4) << "theta " << theta;
-            EXPECT_NEAR(result.total, 1 - result.failed, 5 * std::sqrt(0.25 / 100000) + 1e-4) << "theta " << theta;
+            EXPECT_LE(result.total, 1 + 1e-3) << "theta " << theta;
+            EXPECT_NEAR(result.total, 1 - result.failed, 5 * std::sqrt(0.25 / 100000) + 1e-3) << "theta " << theta;
           }
         },
         c.lobe);
