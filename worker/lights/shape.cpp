@@ -34,10 +34,11 @@ SeenShape::Frame SeenShape::make_frame(const LightShape& shape, const Vec3d& x) 
     Frame operator()(const QuadShape& q) const {
       const Vec3d o = Vec3d(q.o) - x, u(q.u), v(q.v);
       if (q.rectangle()) return SphericalRectangle(o, u, v);
-      return TwoTriangles{{o, o + u, o + u + v}, {o, o + u + v, o + v}};
+      return TwoTriangles{{o, u, u + v}, {o, u + v, v}};
     }
     Frame operator()(const TriangleShape& t) const {
-      return SphericalTriangle(Vec3d(t.p0) - x, Vec3d(t.p1) - x, Vec3d(t.p2) - x);
+      const Vec3d corner(t.p0);
+      return SphericalTriangle(corner - x, Vec3d(t.p1) - corner, Vec3d(t.p2) - corner);
     }
     Frame operator()(const SphereShape& s) const {
       return VisibleSphere(Vec3d(s.center) - x, s.radius, s.inwards);

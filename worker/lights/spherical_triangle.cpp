@@ -7,25 +7,26 @@
 
 namespace penumbra {
 
-SphericalTriangle::SphericalTriangle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  const Vec3d v[3] = {a, b, c};
-  const double length[3] = {a.length(), b.length(), c.length()};
+SphericalTriangle::SphericalTriangle(const Vec3d& corner, const Vec3d& u, const Vec3d& v) {
+  const Vec3d vertex[3] = {corner, corner + u, corner + v},
+              next_edge[3] = {u, v - u, -v};  // from vertex i to the next
+  const double length[3] = {vertex[0].length(), vertex[1].length(), vertex[2].length()};
   // From the farthest vertex a·e and the distance along its edges fall, so that the sums below do not cancel.
   turn_ = static_cast<int>(std::max_element(length, length + 3) - length);
   const int second = (turn_ + 1) % 3, third = (turn_ + 2) % 3;
-  a_ = v[turn_];
-  b_ = v[second];
-  edge_ = v[third] - a_;
-  base_ = a_ - b_;
+  a_ = vertex[turn_];
+  b_ = vertex[second];
+  const Vec3d& c = vertex[third];
+  edge_ = -next_edge[third];
+  base_ = -next_edge[turn_];
   a_length_ = length[turn_];
   b_length_ = length[second];
   edge_length_ = edge_.length();
-  // From the nearest vertex the distance to the plane has the smallest rounding error.
-  const Vec3d& nearest = v[std::min_element(length, length + 3) - length];
-  const PlaneSide side = side_of_plane(-nearest, -base_, edge_);
+  // From the corner, whose offset from x is exact: the sums vertex + edge are not.
+  const PlaneSide side = side_of_plane(-corner, u, v);
   normal_ = side.normal;
   determinant_ = side.distance * side.twice_area;
-  const double ab = a_.dot(b_), bc = b_.dot(v[third]), ca = v[third].dot(a_), c_length = length[third];
+  const double ab = a_.dot(b_), bc = b_.dot(c), ca = c.dot(a_), c_length = length[third];
   sum_ = a_length_ * b_length_ + ab;
   slope_ = b_length_ * a_.dot(edge_) + a_length_ * b_.dot(edge_);
   // Van Oosterom & Strackee 1983: tan(Ω/2) = det / (|a||b||c| + (a·b)|c| + (b·c)|a| + (c·a)|b|).

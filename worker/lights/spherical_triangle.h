@@ -8,12 +8,14 @@ namespace penumbra {
 
 class SphericalTriangle {
  public:
-  /// Vertices minus x. The triangle is seen only from the side of (b−a) × (c−a); else its solid angle is 0.
-  SphericalTriangle(const Vec3d& a, const Vec3d& b, const Vec3d& c);
+  /// Vertices a, b = a + u, c = a + v; `corner`: a minus x. The edges are given apart, because b − x and c −
+  /// x have lost their digits where x is far. The triangle is seen only from the side of u × v; else its
+  /// solid angle is 0.
+  SphericalTriangle(const Vec3d& corner, const Vec3d& u, const Vec3d& v);
 
   /// sr
   double solid_angle() const { return omega_; }
-  /// Unit normal, along (b−a) × (c−a).
+  /// Unit normal, along u × v.
   const Vec3d& normal() const { return normal_; }
 
   /// Barycentric weights (of b, of c) of a point uniform in solid angle. solid_angle() must not be 0.
