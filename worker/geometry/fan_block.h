@@ -20,7 +20,7 @@ class HiddenIntervals {
   using S = Simd;
 
  public:
-  static constexpr int kBlocks = kWidth;  // the leaves of one node
+  static constexpr int kBlocks = 2 * kWidth;  // the leaves of two nodes
 
   void add(S::Mask chosen, S::Floats lo, S::Floats hi) {
     S::compress(lo_ + count_, chosen, lo);
@@ -115,13 +115,19 @@ class FanBlock {
     const Picked g = pick(&Corner::g), beta = pick(&Corner::beta), t = pick(&Corner::t);
     const Crossings e1 = cross(g.first, beta.first, t.first, g.odd, beta.odd, t.odd);
     const Crossings e2 = cross(g.second, beta.second, t.second, g.odd, beta.odd, t.odd);
-    const Place at1 = place(e1), at2 = place(e2);
-    cut = S::without(S::without(cut, S::both(at1.behind, at2.behind)), S::both(at1.beyond, at2.beyond));
-    if (excluded.count != 0) cut = S::without(cut, excluded_lanes(block, excluded));
     S::Floats v1s = S::div(e1.beta, e1.t), v2s = S::div(e2.beta, e2.t);
-    const S::Mask clear = S::either(S::both(at1.clear, at2.clear), decide_behind(e1, at1, e2, at2, v1s, v2s));
-    out.doubt({&block, candidates(S::without(cut, clear), at1, at2, v1s, v2s, v0, v1),
-               static_cast<uint16_t>(S::bits(odd1)), static_cast<uint16_t>(S::bits(odd2))});
+    if (excluded.count != 0) cut = S::without(cut, excluded_lanes(block, excluded));
+    // Mostly all cuts lie clearly between x and the light.
+    const S::Floats nearer = S::min(before(fan_.near, e1), before(fan_.near, e2));
+    const S::Floats farther = S::max(before(fan_.light, e1), before(fan_.light, e2));
+    S::Mask clear = S::both(S::less_equal(S::all(0), nearer), S::less(farther, S::all(0)));
+    if (S::bits(S::without(cut, clear)) != 0) {
+      const Place at1 = place(e1), at2 = place(e2);
+      cut = S::without(S::without(cut, S::both(at1.behind, at2.behind)), S::both(at1.beyond, at2.beyond));
+      clear = S::either(clear, decide_behind(e1, at1, e2, at2, v1s, v2s));
+      out.doubt({&block, candidates(S::without(cut, clear), at1, at2, v1s, v2s, v0, v1),
+                 static_cast<uint16_t>(S::bits(odd1)), static_cast<uint16_t>(S::bits(odd2))});
+    }
     const S::Floats lo = S::max(S::min(v1s, v2s), S::all(v0)), hi = S::min(S::max(v1s, v2s), S::all(v1));
     cut = S::both(S::both(cut, clear), S::less(lo, hi));
     out.add(cut, lo, hi);
@@ -179,11 +185,14 @@ class FanBlock {
     return {S::add(S::mul(g, beta2), S::mul(g2, beta)), S::add(S::mul(g, t2), S::mul(g2, t)), S::add(g, g2)};
   }
 
+  /// t - limit w: negative before the limit.
+  static S::Floats before(float limit, const Crossings& e) { return S::fma(S::all(-limit), e.w, e.t); }
+
   Place place(const Crossings& e) const {
     Place at;
-    at.front = S::less_equal(S::mul(S::all(fan_.near), e.w), e.t);
-    at.behind = S::less(e.t, S::mul(S::all(-fan_.near), e.w));
-    at.beyond = S::less_equal(S::mul(S::all(fan_.light), e.w), e.t);
+    at.front = S::less_equal(S::all(0), before(fan_.near, e));
+    at.behind = S::less(before(-fan_.near, e), S::all(0));
+    at.beyond = S::less_equal(S::all(0), before(fan_.light, e));
     at.clear = S::without(at.front, at.beyond);
     return at;
   }

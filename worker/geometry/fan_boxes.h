@@ -44,15 +44,21 @@ class FanBoxes {
     for (int k = 0; k < 3; ++k) {
       box_lo_[k] = x_[k] + std::min({0.f, e0[k], e1[k]}) - slack_;
       box_hi_[k] = x_[k] + std::max({0.f, e0[k], e1[k]}) + slack_;
-      sides_[k] = side(k, e0, sign_[k], true);
-      sides_[3 + k] = side(k, e1, -sign_[k], true);
     }
+    if (part.lo != part_.lo) {
+      for (int k = 0; k < 3; ++k) sides_[k] = side(k, e0, sign_[k], true);
+    }
+    if (part.hi != part_.hi) {
+      for (int k = 0; k < 3; ++k) sides_[3 + k] = side(k, e1, -sign_[k], true);
+    }
+    part_ = part;
   }
 
   /// A hidden stretch: boxes that lie wholly within it are of no interest.
   void skip(Interval gap) {
+    if (gap == skipped_) return;
+    skipped_ = gap;
     has_gap_ = gap.lo < gap.hi;
-    if (!has_gap_) return;
     const Vec3f e0 = a_ + chord_ * gap.lo, e1 = a_ + chord_ * gap.hi;
     for (int k = 0; k < 3; ++k) {
       gap_[k] = side(k, e0, sign_[k], false);
@@ -113,6 +119,7 @@ class FanBoxes {
   float box_lo_[3], box_hi_[3];
   Side sides_[6], gap_[6];
   bool has_gap_ = false;
+  Interval part_{-1, -1}, skipped_{0, 0};
 };
 
 }  // namespace

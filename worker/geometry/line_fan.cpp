@@ -52,13 +52,13 @@ struct Corners {
 };
 
 bool in_front(const LineFan& fan, const Crossing& e) {
-  return e.t >= fan.near * e.w;
+  return std::fma(-fan.near, e.w, e.t) >= 0;
 }
 bool behind(const LineFan& fan, const Crossing& e) {
-  return e.t < -fan.near * e.w;
+  return std::fma(fan.near, e.w, e.t) < 0;
 }
 bool beyond(const LineFan& fan, const Crossing& e) {
-  return e.t >= fan.light * e.w;
+  return std::fma(-fan.light, e.w, e.t) >= 0;
 }
 
 /// An interval's ends in any order, clamped to the chord.

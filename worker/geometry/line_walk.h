@@ -28,10 +28,9 @@ class LineWalk {
                 workspace_.leaves.data());
     }
     if (!bvh_.instance_tree.nodes.empty() && !visible_.empty()) placed_objects(x, a, b);
-    if (widest_ > 0 && occluder_world_) {
-      workspace_.occluder_tree = bvh_.id;
-      workspace_.occluder = occluder_;
-    }
+    // A neighbour of a lit point is mostly lit: then there is nothing to try first.
+    workspace_.occluder_tree = widest_ > 0 && occluder_world_ ? bvh_.id : 0;
+    workspace_.occluder = occluder_;
     for (int i = 0; i < visible_.size(); ++i) out.append(visible_[i].lo, visible_[i].hi);
   }
 
@@ -92,21 +91,32 @@ class LineWalk {
     uint32_t* stack = stack_base;
     *stack++ = 0;
     while (stack != stack_base) {
-      const LineNode& node = tree.nodes[*--stack];
-      ++counters_.nodes_visited;
-      const uint32_t met = boxes.meeting(node);
-      const uint32_t inner = met & ~node.leaves, found = met & node.leaves;
-      Simd::compress(stack, inner, node.child);
-      stack += std::popcount(inner);
-      if (found == 0) continue;
-      Simd::compress(leaves, found, node.child);
-      use(leaves, std::popcount(found), stack, leaves + kWidth);
+      // Two nodes at a time: their tests overlap where one alone would wait for its loads. Without a second
+      // one the first is tested twice, and the second result dropped.
+      const bool pair = stack - stack_base > 1;
+      const LineNode& node0 = tree.nodes[*--stack];
+      const LineNode& node1 = tree.nodes[stack[pair ? -1 : 0]];
+      stack -= pair;
+      counters_.nodes_visited += 1 + pair;
+      const uint32_t met0 = boxes.meeting(node0), met1 = pair ? boxes.meeting(node1) : 0;
+      const int found = push(node0, met0, stack, leaves, 0);
+      const int all = push(node1, met1, stack, leaves, found);
+      if (all == 0) continue;
+      use(leaves, all, stack, leaves + 2 * kWidth);
       if (version == version_) continue;
       if (visible_.empty()) return;
       version = version_;
       boxes.narrow(visible_.hull());
       boxes.skip(visible_.widest_gap());
     }
+  }
+
+  /// Inner nodes go on the stack, leaves behind the `found` ones; returns how many of these there are.
+  static int push(const LineNode& node, uint32_t met, uint32_t*& stack, uint32_t* leaves, int found) {
+    Simd::compress(stack, met & ~node.leaves, node.child);
+    stack += std::popcount(met & ~node.leaves);
+    Simd::compress(leaves + found, met & node.leaves, node.child);
+    return found + std::popcount(met & node.leaves);
   }
 
   const LineBvh& bvh_;

@@ -9,12 +9,11 @@ void LineWorkspace::grow_set() {
 
 LineWorkspace& line_workspace(uint32_t depth) {
   thread_local LineWorkspace workspace;
-  // Every level leaves at most 16 nodes on the stack, and a whole vector may be written past the end.
-  const size_t room = (size_t{depth} + 2) * kWidth;
-  if (workspace.stack.size() < room) {
-    workspace.stack.resize(room);
-    workspace.leaves.resize(room);
-  }
+  // Two nodes are taken and their children pushed: every level leaves at most 32 nodes on the stack. Two
+  // walks (instances) hold leaves of two nodes each. A whole vector may be written past the end.
+  const size_t room = (2 * size_t{depth} + 2) * kWidth;
+  if (workspace.stack.size() < room) workspace.stack.resize(room);
+  workspace.leaves.resize(5 * kWidth);
   if (workspace.lo.empty()) workspace.grow_set();
   return workspace;
 }
