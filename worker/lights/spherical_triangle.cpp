@@ -11,8 +11,10 @@ SphericalTriangle::SphericalTriangle(const Vec3d& corner, const Vec3d& u, const 
   const Vec3d vertex[3] = {corner, corner + u, corner + v},
               next_edge[3] = {u, v - u, -v};  // from vertex i to the next
   const double length[3] = {vertex[0].length(), vertex[1].length(), vertex[2].length()};
-  // From the farthest vertex a·e and the distance along its edges fall, so that the sums below do not cancel.
-  turn_ = static_cast<int>(std::max_element(length, length + 3) - length);
+  // Most of the solid angle lies near the nearest vertex: measured from there, offsets along an edge keep
+  // their digits where they matter, and what cancels in sample() does so far out, in proportion to what is
+  // left there.
+  turn_ = static_cast<int>(std::min_element(length, length + 3) - length);
   const int second = (turn_ + 1) % 3, third = (turn_ + 2) % 3;
   a_ = vertex[turn_];
   b_ = vertex[second];

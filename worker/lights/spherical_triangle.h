@@ -22,7 +22,7 @@ class SphericalTriangle {
   Vec2d sample(const Vec2d& u) const;
 
  private:
-  Vec3d normal_, a_, b_, edge_, base_;  ///< a, farthest from x; b; c − a; a − b
+  Vec3d normal_, a_, b_, edge_, base_;  ///< a, nearest to x; b; c − a; a − b
   int turn_;  ///< a_ is the constructor's vertex number turn_, and the others follow it
   double determinant_, omega_ = 0;
   double a_length_, b_length_, edge_length_;

@@ -101,6 +101,45 @@ TEST(SolidAngle, DoesNotDependOnTheScenesOffset) {
             pdf_area(moved_quad, x + Vec3d(offset), Vec3d(offset) + Vec3d(0, 0, 0.25), {0, 0, 1}));
 }
 
+/// Solid angle of the triangle of corner minus x and two edges.
+long double omega_of(const Vec3d& corner, const Vec3d& u, const Vec3d& v) {
+  using V = Imath::Vec3<long double>;
+  const V a(corner), b = a + V(u), c = a + V(v);
+  const long double la = std::sqrt(a.dot(a)), lb = std::sqrt(b.dot(b)), lc = std::sqrt(c.dot(c));
+  return 2 * std::atan2(std::abs(a.dot(V(u).cross(V(v)))),
+                        la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+}
+
+TEST(SphericalTriangle, SamplesCutOffTheirShareOfTheSolidAngle) {
+  // With a nearest to x and b next to it, the first number u is the share of (a, b, q) for a sample q on edge
+  // a→c (second number 1). Slivers, needles and blades; near, far, grazing, almost on an edge.
+  const Vec3d shapes[][2] = {{{2, 0, 0}, {0.5, 1, 0}},
+                             {{2, 0, 0}, {1, 1e-5, 0}},
+                             {{1e-5, 0, 0}, {1, 3, 0}},
+                             {{2, 0, 0}, {-1, 1e-9, 0}},
+                             {{1e6, 0, 0}, {0.5e6, 1, 0}}};
+  const Vec3d corners[] = {
+      {1, 2, -1}, {-0.8, -0.3, -1e-3}, {1e4, 2e4, -3e4}, {5, 0.3, -1e-4}, {1, 1e-6, -1e-6}};
+  for (const auto& edges : shapes)
+    for (const Vec3d& corner : corners) {
+      const SphericalTriangle t(corner, edges[0], edges[1]);
+      const long double whole = omega_of(corner, edges[0], edges[1]);
+      EXPECT_NEAR(static_cast<double>(t.solid_angle() / whole), 1, 16 * 0x1p-53);
+      const Vec3d vertex[3] = {corner, corner + edges[0], corner + edges[1]};
+      int a = 0;
+      for (const int k : {1, 2})
+        if (vertex[k].length() < vertex[a].length()) a = k;
+      const Vec3d next_edge[3] = {edges[0], edges[1] - edges[0], -edges[1]};
+      const Vec3d to_b = next_edge[a], to_c = -next_edge[(a + 2) % 3];
+      for (const double u : {1e-9, 0.1, 0.5, 0.9, 1 - 1e-9}) {
+        const Vec2d w = t.sample({u, 1});
+        const double weight[3] = {1 - w.x - w.y, w.x, w.y};
+        const long double share = omega_of(vertex[a], to_b, weight[(a + 2) % 3] * to_c) / whole;
+        EXPECT_NEAR(static_cast<double>(share), u, 5e-14) << t.solid_angle() << " sr";
+      }
+    }
+}
+
 TEST(SphericalTriangle, SamplesStayInsideAtTheEndsOfTheUnitSquare) {
   const double last = 1 - 0x1p-53;
   for (uint64_t i = 0; i < 200; ++i) {
