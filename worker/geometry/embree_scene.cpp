@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <algorithm>
 #include <limits>
 #include <string>
 
@@ -79,7 +80,9 @@ bool segment_hits(RTCScene scene, const Vec3f& x, const Vec3f& y) {
   rtcInitIntersectContext(&context);
   const Vec3f d = y - x;
   RTCRay ray;
-  ray.org_x = x.x, ray.org_y = x.y, ray.org_z = x.z, ray.tnear = 0;
+  // Strictly beyond x: Embree's robust test counts a surface at the near end itself, and at x it would be
+  // the one that x was moved off, by as little as a denormal number where its plane passes through 0.
+  ray.org_x = x.x, ray.org_y = x.y, ray.org_z = x.z, ray.tnear = std::numeric_limits<float>::min();
   ray.dir_x = d.x, ray.dir_y = d.y, ray.dir_z = d.z, ray.time = 0;
   ray.tfar = std::nextafter(1.f, 0.f);
   ray.mask = ~0u, ray.id = 0, ray.flags = 0;
@@ -182,7 +185,7 @@ std::optional<Hit> EmbreeScene::intersect(const Ray& ray) const {
   RTCRayHit query;
   query.ray.org_x = ray.origin.x, query.ray.org_y = ray.origin.y, query.ray.org_z = ray.origin.z;
   query.ray.dir_x = ray.direction.x, query.ray.dir_y = ray.direction.y, query.ray.dir_z = ray.direction.z;
-  query.ray.tnear = std::nextafter(ray.near, kInfinity);
+  query.ray.tnear = std::max(std::nextafter(ray.near, kInfinity), std::numeric_limits<float>::min());
   query.ray.tfar = ray.far;
   query.ray.time = 0, query.ray.mask = ~0u, query.ray.id = 0, query.ray.flags = 0;
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;

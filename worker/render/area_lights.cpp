@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "proto/status.h"
+#include "worker/render/light_params.h"
 #include "worker/render/scene_builder.h"
 
 namespace penumbra {
@@ -11,21 +12,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-Vec3f point(const Matrix& m, const Vec3d& p) {
-  Vec3d out;
-  m.multVecMatrix(p, out);
-  return Vec3f(out);
-}
-Vec3f direction(const Matrix& m, const Vec3d& d) {
-  Vec3d out;
-  m.multDirMatrix(d, out);
-  return Vec3f(out);
-}
-
-Vec3d vector_param(const Params& params, std::string_view name, const Vec3d& fallback) {
-  const Param* p = params.find(name);
-  return p && p->numbers.size() == 3 ? Vec3d(p->numbers[0], p->numbers[1], p->numbers[2]) : fallback;
-}
+Vec3f point(const Matrix& m, const Vec3d& p) { return Vec3f(transform_point(m, p)); }
+Vec3f direction(const Matrix& m, const Vec3d& d) { return Vec3f(transform_direction(m, d)); }
 
 /// Lengths of the transformed unit axes; equal to rounding for a similarity. The bound is that of float
 /// input: a similarity written with seven digits is one.
@@ -47,8 +35,8 @@ std::optional<LightShape> exact_shape(const ShapeEntity& shape, const SceneMesh&
   const Params& params = shape.params;
   double scale = 1;
   if (shape.type == "quad") {
-    QuadShape quad{point(m, vector_param(params, "o", {})), direction(m, vector_param(params, "u", {})),
-                   direction(m, vector_param(params, "v", {}))};
+    QuadShape quad{point(m, vector_param(params, "o")), direction(m, vector_param(params, "u")),
+                   direction(m, vector_param(params, "v"))};
     // Turned by running v backwards from the other edge: u and v keep their directions for the mixes.
     if (placed.flip) {
       quad.o += quad.v;
@@ -59,7 +47,7 @@ std::optional<LightShape> exact_shape(const ShapeEntity& shape, const SceneMesh&
   if (shape.type == "sphere" && is_similarity(m, scale) && full_sweep(params)) {
     const double radius = params.number("radius", 1);
     if (params.number("zmin", -radius) > -radius || params.number("zmax", radius) < radius) return std::nullopt;
-    return SphereShape{point(m, {}), float(radius * scale), shape.reverse_orientation};
+    return SphereShape{point(m, Vec3d(0)), float(radius * scale), shape.reverse_orientation};
   }
   if (shape.type == "disk" && is_similarity(m, scale) && full_sweep(params)) {
     const double radius = params.number("radius", 1), height = params.number("height", 0);
@@ -136,10 +124,7 @@ absl::Status add_area_light(const ShapeEntity& shape, uint32_t mesh, const Scene
   if (const Param* l = entity.params.find("L")) {
     ASSIGN_OR_RETURN(radiance, to_rgb(*l, description, files));
   }
-  if (const Param* scale = entity.params.find("scale"); scale && scale->numbers.size() >= 3)
-    radiance *= Rgb(float(scale->numbers[0]), float(scale->numbers[1]), float(scale->numbers[2]));
-  else
-    radiance *= float(entity.params.number("scale", 1));
+  apply_scale(entity.params, radiance);
   if (entity.params.find("filename"))
     warnings.push_back(fmt::format("{}: an image on an area light is rendered as its constant radiance",
                                    description.place(entity.loc)));

@@ -4,21 +4,11 @@
 #include <numbers>
 
 #include "proto/status.h"
+#include "worker/render/light_params.h"
 #include "worker/render/scene_builder.h"
 
 namespace penumbra {
 namespace {
-
-Vec3d vector_param(const Params& params, std::string_view name, const Vec3d& fallback) {
-  const Param* p = params.find(name);
-  return p && p->numbers.size() == 3 ? Vec3d(p->numbers[0], p->numbers[1], p->numbers[2]) : fallback;
-}
-
-Vec3d world_point(const Matrix& m, const Vec3d& p) {
-  Vec3d out;
-  m.multVecMatrix(p, out);
-  return out;
-}
 
 absl::StatusOr<Rgb> strength(const LightEntity& light, std::string_view name, const SceneDescription& description,
                              const SceneFiles& files) {
@@ -26,10 +16,7 @@ absl::StatusOr<Rgb> strength(const LightEntity& light, std::string_view name, co
   if (const Param* p = light.params.find(name)) {
     ASSIGN_OR_RETURN(value, to_rgb(*p, description, files));
   }
-  if (const Param* scale = light.params.find("scale")) {
-    if (scale->numbers.size() >= 3) value *= Rgb(float(scale->numbers[0]), float(scale->numbers[1]), float(scale->numbers[2]));
-    else value *= float(light.params.number("scale", 1));
-  }
+  apply_scale(light.params, value);
   return value;
 }
 
@@ -46,12 +33,12 @@ absl::Status add_light(const LightEntity& light, const SceneDescription& descrip
   }
   if (light.type == "point") {
     PointEmitter e;
-    e.position = Vec3f(world_point(m, vector_param(params, "from", {})));
+    e.position = Vec3f(transform_point(m, vector_param(params, "from")));
     ASSIGN_OR_RETURN(e.intensity, strength(light, "I", description, files));
     lights.delta.push_back(e);
   } else if (light.type == "spot") {
-    const Vec3d from = world_point(m, vector_param(params, "from", {}));
-    const Vec3d to = world_point(m, vector_param(params, "to", {0, 0, 1}));
+    const Vec3d from = transform_point(m, vector_param(params, "from"));
+    const Vec3d to = transform_point(m, vector_param(params, "to", Vec3d(0, 0, 1)));
     if (from == to) return invalid_input("{}: a spot light needs `to` apart from `from`", description.place(light.loc));
     const double cone = params.number("coneangle", 30), delta = params.number("conedeltaangle", 5);
     SpotEmitter e;
@@ -62,9 +49,8 @@ absl::Status add_light(const LightEntity& light, const SceneDescription& descrip
     ASSIGN_OR_RETURN(e.intensity, strength(light, "I", description, files));
     lights.delta.push_back(e);
   } else if (light.type == "distant") {
-    const Vec3d from = vector_param(params, "from", {}), to = vector_param(params, "to", {0, 0, 1});
-    Vec3d towards;
-    m.multDirMatrix(from - to, towards);
+    const Vec3d from = vector_param(params, "from"), to = vector_param(params, "to", Vec3d(0, 0, 1));
+    const Vec3d towards = transform_direction(m, from - to);
     if (!(towards.length2() > 0))
       return invalid_input("{}: a distant light needs `to` apart from `from`", description.place(light.loc));
     DistantEmitter e;

@@ -10,6 +10,7 @@
 #include "scenes/needs.h"
 #include "scenes/parser.h"
 #include "worker/render/scene_builder.h"
+#include "worker/strategies/strategy.h"
 
 namespace penumbra {
 namespace {

@@ -85,9 +85,13 @@ SurfacePoint surface_at(const Scene& scene, const Hit& hit, const Vec3f& directi
 
   SurfacePoint point;
   point.id = hit.id;
+  point.dndu = point.dndv = point.dpdx = point.dpdy = Vec3f(0);
   point.wo = -direction;
   point.p = t.p0 * b0 + t.p1 * b1 + t.p2 * b2;
-  point.p_error = (abs(t.p0 * b0) + abs(t.p1 * b1) + abs(t.p2 * b2)) * gamma(7);
+  // Rounding of the blend, and of what a ray that starts here computes for its distance to this very
+  // triangle: n · (p0 - origin), each difference rounded in proportion to the triangle's extent.
+  point.p_error = (abs(t.p0 * b0) + abs(t.p1 * b1) + abs(t.p2 * b2)) * gamma(7) +
+                  (abs(t.p1 - t.p0) + abs(t.p2 - t.p0)) * gamma(6);
   point.uv = t.uv0 * b0 + t.uv1 * b1 + t.uv2 * b2;
   const bool has_uv = partials(t, t.p0 - t.p2, t.p1 - t.p2, point.dpdu, point.dpdv);
 

@@ -56,7 +56,7 @@ class DirectLight {
   /// A direction that some strategy found, on its way to its weight.
   struct Candidate {
     LightSample sample;
-    Rgb f;              ///< BSDF × cosine × radiance
+    Rgb f{0};           ///< BSDF × cosine × radiance
     size_t slot = 0;    ///< of the strategy that found it
     size_t line = 0;    ///< of its own line in the batch, if its strategy is a line
     double s = 0;       ///< where on that line

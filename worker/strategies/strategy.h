@@ -64,9 +64,9 @@ class LightView {
 
 /// A direction towards a light.
 struct LightSample {
-  Vec3f wi;
-  LightPoint at;  ///< area lights: where; its pdf is the strategy's density, sr⁻¹ at x
-  Rgb radiance;
+  Vec3f wi{0};
+  LightPoint at{Vec3d(0), Vec3d(0), 0};  ///< area lights: where; its pdf is the strategy's density, sr⁻¹ at x
+  Rgb radiance{0};
 };
 
 /// A point or direction from a strategy that samples points. pdf 0: no sample.

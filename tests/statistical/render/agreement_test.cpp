@@ -52,7 +52,7 @@ const std::string kBlocker = R"(Material "plastic" "rgb Kd" [ 0.4 0.2 0.2 ] "rgb
 Shape "trianglemesh" "integer indices" [ 0 1 2  0 2 3  0 1 4 ] "point P" [ -0.8 0.5 -0.4  0.7 0.6 -0.5  0.8 0.8 0.5  -0.6 0.7 0.4  0 1.3 0 ]
 )";
 std::string area_light(const std::string& shape, const std::string& more = "") {
-  return "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [ 8 7 6 ] " + more + "\nMaterial \"matte\" \"rgb Kd\" 0\n" +
+  return "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [ 8 7 6 ] " + more + "\nMaterial \"matte\" \"rgb Kd\" [ 0 0 0 ]\n" +
          shape + "\nAttributeEnd\n";
 }
 const std::string kQuad = R"(Shape "quad" "point o" [ -0.7 2.2 -0.5 ] "vector u" [ 1.4 0 0 ] "vector v" [ 0 0 0.9 ])";
