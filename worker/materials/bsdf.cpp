@@ -19,8 +19,8 @@ constexpr bool kSmooth = !std::decay_t<L>::kSpecular;
 /// A pair of directions in the shading frame, and where they lie about the geometric surface.
 struct Bsdf::Pair {
   Vec3d wo, wi;
-  bool reflects = false;   ///< both strictly on one side of the geometric surface
-  bool transmits = false;  ///< strictly on opposite sides
+  bool reflects = false;   ///< both on one side of the geometric surface
+  bool transmits = false;  ///< on opposite sides; neither where one of them lies in a surface
   bool serves(bool lobe_transmits) const { return lobe_transmits ? transmits : reflects; }
 };
 
@@ -66,13 +66,17 @@ Vec3f Bsdf::to_world(const Vec3d& w) const {
 }
 
 Bsdf::Pair Bsdf::pair(const Vec3f& wo, const Vec3f& wi) const {
-  const double sides = (Vec3d(wo) ^ Vec3d(ng_)) * (Vec3d(wi) ^ Vec3d(ng_));
-  return {to_local(wo), to_local(wi), sides > 0, sides < 0};
+  Pair p{to_local(wo), to_local(wi)};
+  const double side_o = Vec3d(wo) ^ Vec3d(ng_), side_i = Vec3d(wi) ^ Vec3d(ng_);
+  const double least = std::min({std::abs(side_o), std::abs(side_i), abs_cos(p.wo), abs_cos(p.wi)});
+  if (least < kLeastCosine) return p;
+  p.reflects = (side_o > 0) == (side_i > 0);
+  p.transmits = !p.reflects;
+  return p;
 }
 
 Rgb Bsdf::f(const Pair& directions) const {
   Rgb sum(0);
-  if (directions.wo.z == 0) return sum;
   for (int i = 0; i < count_; ++i) {
     std::visit(
         [&](const auto& lobe) {
@@ -94,7 +98,6 @@ Rgb Bsdf::f(const Pair& directions) const {
 // density at a direction is that of the lobe there plus that at the antipode.
 double Bsdf::pdf(const Pair& directions) const {
   double sum = 0;
-  if (directions.wo.z == 0) return 0;
   for (int i = 0; i < count_; ++i) {
     std::visit(
         [&](const auto& lobe) {
@@ -133,7 +136,7 @@ const Bsdf::Weighted& Bsdf::choose(double choice) const {
 std::optional<BsdfSample> Bsdf::sample(const Vec3f& wo, const Vec2d& u, double choice) const {
   if (!has_non_specular()) return std::nullopt;
   const Vec3d local_wo = to_local(wo);
-  if (local_wo.z == 0) return std::nullopt;
+  if (abs_cos(local_wo) < kLeastCosine) return std::nullopt;
   BsdfSample result;
   const bool found = std::visit(
       [&](const auto& lobe) {
@@ -160,6 +163,7 @@ std::optional<BsdfSample> Bsdf::sample(const Vec3f& wo, const Vec2d& u, double c
 
 std::optional<BsdfSample> Bsdf::sample_specular(const Vec3f& wo, int index) const {
   const Vec3d local_wo = to_local(wo);
+  if (abs_cos(local_wo) < kLeastCosine) return std::nullopt;
   for (int i = 0; i < count_; ++i) {
     if (lobes_[i].weight > 0 || index-- > 0) continue;
     return std::visit(

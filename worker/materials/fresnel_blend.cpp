@@ -23,11 +23,9 @@ double coat_transmission(double c) {
 }  // namespace
 
 Rgb f(const FresnelBlend& lobe, const Vec3d& wo, const Vec3d& wi) {
-  const Vec3d sum = wi + wo;
-  if (wi.z == 0 || wo.z == 0 || sum == Vec3d(0)) return Rgb(0);
   const double base =
       28 / (23 * std::numbers::pi) * coat_transmission(abs_cos(wi)) * coat_transmission(abs_cos(wo));
-  const Vec3d wh = sum.normalized();
+  const Vec3d wh = (wi + wo).normalized();
   const double cos_d = std::abs(wi ^ wh);
   const double coat = distribution(lobe.facets, wh) / (4 * cos_d * std::max(abs_cos(wi), abs_cos(wo)));
   const Rgb schlick =
@@ -45,7 +43,6 @@ double pdf(const FresnelBlend& lobe, const Vec3d& wo, const Vec3d& wi) {
 }
 
 std::optional<Vec3d> sample(const FresnelBlend& lobe, const Vec3d& wo, const Vec2d& u) {
-  if (wo.z == 0) return std::nullopt;
   if (u.x < 0.5) {
     Vec3d wi = square_to_cosine_hemisphere({2 * u.x, u.y});
     if (wo.z < 0) wi.z = -wi.z;

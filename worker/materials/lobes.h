@@ -1,6 +1,8 @@
 #pragma once
 // The closed set of lobes. Directions are unit, in the shading frame (local_frame.h), away from the
-// surface; f is per solid angle, without the cosine; densities are sr⁻¹.
+// surface; f is per solid angle, without the cosine; densities are sr⁻¹. Bsdf asks only for directions whose
+// cosines, to the shading and to the geometric normal, are at least kLeastCosine, and asks a reflecting lobe
+// only for pairs on one side of the geometric surface: so no lobe divides by zero.
 //
 // A new lobe needs a file of its own, its name here, and
 //   kSpecular   a Dirac lobe: scatter(lobe, wo); else f(), pdf(), sample()

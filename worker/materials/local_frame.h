@@ -7,6 +7,10 @@
 
 namespace penumbra {
 
+/// Below this a direction lies in the plane: unit vectors in single precision are good to 2⁻²⁴, so a cosine
+/// this small is rounding, and 1/(cosθ_i cosθ_o) of it times any D of ours is still finite as a float.
+constexpr double kLeastCosine = 0x1p-40;
+
 inline double abs_cos(const Vec3d& w) {
   return std::abs(w.z);
 }

@@ -107,9 +107,9 @@ absl::StatusOr<std::shared_ptr<const Image>> MaterialBuilder::normal_map(const M
   const std::string name = entity.params.string("normalmap", "");
   if (param == nullptr || name.empty()) return nullptr;
   const auto path = files_.path_of(name);
-  absl::StatusOr<Texels> texels = path.status();
-  if (path.ok()) texels = read_image(*path, false, Encoding{Encoding::kLinear});
-  if (texels.ok()) return std::make_shared<const Image>(*std::move(texels));
+  const absl::StatusOr<Texels> texels =
+      path.ok() ? read_image(*path, false, Encoding{Encoding::kLinear}) : path.status();
+  if (texels.ok()) return std::make_shared<const Image>(*texels);
   RETURN_IF_ERROR(complain(param->loc, fmt::format("normal map '{}' cannot be read ({}): none instead", name,
                                                    message_of(texels.status()))));
   return nullptr;

@@ -10,9 +10,7 @@ double microfacet_reflection_term(const TrowbridgeReitz& facets, const Vec3d& wo
 }
 
 Rgb f(const MicrofacetReflection& lobe, const Vec3d& wo, const Vec3d& wi) {
-  const Vec3d sum = wi + wo;
-  if (wi.z == 0 || wo.z == 0 || sum == Vec3d(0)) return Rgb(0);
-  const Vec3d wh = sum.normalized();
+  const Vec3d wh = (wi + wo).normalized();
   const double term = microfacet_reflection_term(lobe.facets, wo, wi, wh);
   return lobe.reflectance * reflectance(lobe.fresnel, wi ^ wh) * static_cast<float>(term);
 }
@@ -25,7 +23,6 @@ double pdf(const MicrofacetReflection& lobe, const Vec3d& wo, const Vec3d& wi) {
 }
 
 std::optional<Vec3d> sample(const MicrofacetReflection& lobe, const Vec3d& wo, const Vec2d& u) {
-  if (wo.z == 0) return std::nullopt;
   const Vec3d wi = reflected(wo, sample_visible_normal(lobe.facets, wo, u));
   if (!same_hemisphere(wo, wi)) return std::nullopt;
   return wi;

@@ -20,7 +20,7 @@ struct Facet {
 /// Empty where no facet can: both directions on one side of the surface or of the facet, or a facet that
 /// wo would see from behind.
 std::optional<Facet> refracting_facet(const Vec3d& wo, const Vec3d& wi, double eta) {
-  if (wo.z == 0 || wi.z == 0 || same_hemisphere(wo, wi)) return std::nullopt;
+  if (same_hemisphere(wo, wi)) return std::nullopt;
   const Vec3d sum = wo + wi * eta;
   if (sum == Vec3d(0)) return std::nullopt;  // equal indices, straight on: every facet and none
   Vec3d wh = sum.normalized();
@@ -54,7 +54,6 @@ double pdf(const MicrofacetTransmission& lobe, const Vec3d& wo, const Vec3d& wi)
 }
 
 std::optional<Vec3d> sample(const MicrofacetTransmission& lobe, const Vec3d& wo, const Vec2d& u) {
-  if (wo.z == 0) return std::nullopt;
   const Vec3d wh = sample_visible_normal(lobe.facets, wo, u);
   Vec3d wi;
   if (!refracted(wo, wh, 1 / relative_eta(lobe, wo), wi) || same_hemisphere(wo, wi)) return std::nullopt;

@@ -5,7 +5,6 @@
 namespace penumbra {
 
 std::optional<SpecularDirection> scatter(const SpecularReflection& lobe, const Vec3d& wo) {
-  if (wo.z == 0) return std::nullopt;
   const Vec3d wi(-wo.x, -wo.y, wo.z);
   const Rgb throughput = lobe.reflectance * reflectance(lobe.fresnel, wi.z);
   return SpecularDirection{wi, throughput * static_cast<float>(1 / abs_cos(wi))};

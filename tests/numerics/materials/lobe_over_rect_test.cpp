@@ -1,4 +1,5 @@
-// Battery f6: a lobe times the cosine over a rectangle, by adaptive quadrature of the product's own functions.
+// Battery f6: a lobe times the cosine over a rectangle, by adaptive quadrature of the product's own
+// functions.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -61,12 +62,14 @@ class Quadrature {
   }
   double refine(double x, double y, double size, double whole, double tolerance, int depth) {
     const double h = size / 2;
-    const std::array<double, 4> parts = {rule(x, y, h), rule(x + h, y, h), rule(x, y + h, h), rule(x + h, y + h, h)};
+    const std::array<double, 4> parts = {rule(x, y, h), rule(x + h, y, h), rule(x, y + h, h),
+                                         rule(x + h, y + h, h)};
     const double sum = parts[0] + parts[1] + parts[2] + parts[3];
     const bool settled = std::abs(sum - whole) <= tolerance && !(depth < 14 && near_peak(x, y, size));
     if (depth >= 3 && (settled || depth == 24)) return sum;
     double total = 0;
-    for (int k = 0; k < 4; ++k) total += refine(x + h * (k & 1), y + h * (k >> 1), h, parts[k], tolerance, depth + 1);
+    for (int k = 0; k < 4; ++k)
+      total += refine(x + h * (k & 1), y + h * (k >> 1), h, parts[k], tolerance, depth + 1);
     return total;
   }
   F f_;

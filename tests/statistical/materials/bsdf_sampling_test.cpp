@@ -17,7 +17,9 @@ SurfacePoint flat_point() {
   return point;
 }
 
-Vec3f tilted(float angle) { return {std::sin(angle), 0, std::cos(angle)}; }
+Vec3f tilted(float angle) {
+  return {std::sin(angle), 0, std::cos(angle)};
+}
 
 struct Surface {
   const char* name;
@@ -97,7 +99,8 @@ TEST(BsdfSampling, EstimatesTheSameIntegralAsUniformSampling) {
       other2 += v * v;
     }
     const double mean = own / kSamples, reference = other / kSamples;
-    const double variance = (own2 / kSamples - mean * mean + other2 / kSamples - reference * reference) / kSamples;
+    const double variance =
+        (own2 / kSamples - mean * mean + other2 / kSamples - reference * reference) / kSamples;
     EXPECT_NEAR(mean, reference, 4 * std::sqrt(variance)) << s.name;
   }
 }

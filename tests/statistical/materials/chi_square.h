@@ -91,8 +91,8 @@ inline double chi_square_tail(double x, double k) {
 
 struct ChiSquare {
   double p_value = 0;
-  double total = 0;     ///< ∫ density over the sphere
-  double failed = 0;    ///< part of the samples that gave none
+  double total = 0;   ///< ∫ density over the sphere
+  double failed = 0;  ///< part of the samples that gave none
 };
 
 /// Samples, cells, and the cell of those that failed (probability 1 - ∫ density). Cells that expect fewer
@@ -111,7 +111,8 @@ inline ChiSquare chi_square(const Sampler& sample, const Density& density, const
       continue;
     }
     const Vec2d at = map.square(*d);
-    const int w = std::min(kW - 1, static_cast<int>(at.x * kW)), v = std::min(kV - 1, static_cast<int>(at.y * kV));
+    const int w = std::min(kW - 1, static_cast<int>(at.x * kW)),
+              v = std::min(kV - 1, static_cast<int>(at.y * kV));
     ++counts[w * kV + v];
   }
   ChiSquare result;

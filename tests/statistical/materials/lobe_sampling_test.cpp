@@ -24,7 +24,8 @@ std::vector<LobeCase> lobe_cases() {
                                  {"OrenNayar", oren_nayar(white, 30)},
                                  {"LambertTransmission", LambertTransmission{white}},
                                  {"CoatedLambert", coated_lambert(Rgb(0.8f), 1.5)}};
-  const std::pair<double, double> alphas[] = {{1e-3, 1e-3}, {0.02, 0.02}, {0.1, 0.1}, {0.1, 0.4}, {0.5, 0.5}, {1, 1}};
+  const std::pair<double, double> alphas[] = {{1e-3, 1e-3}, {0.02, 0.02}, {0.1, 0.1},
+                                              {0.1, 0.4},   {0.5, 0.5},   {1, 1}};
   for (const auto& [ax, ay] : alphas) {
     const TrowbridgeReitz d{ax, ay};
     const std::string suffix = "_" + std::to_string(int(ax * 1000)) + "_" + std::to_string(int(ay * 1000));
@@ -67,16 +68,21 @@ TEST_P(LobeSampling, SamplesFollowTheDensity) {
                 [&](const Vec3d& wi) { return pdf(lobe, wo, wi); }, map, 100000, 1234);
             EXPECT_GT(result.p_value, threshold) << "theta " << theta << " total " << result.total;
             EXPECT_LE(result.total, 1 + 1e-3) << "theta " << theta;
-            EXPECT_NEAR(result.total, 1 - result.failed, 5 * std::sqrt(0.25 / 100000) + 1e-3) << "theta " << theta;
+            EXPECT_NEAR(result.total, 1 - result.failed, 5 * std::sqrt(0.25 / 100000) + 1e-3)
+                << "theta " << theta;
           }
         },
         c.lobe);
   }
 }
 
-void PrintTo(const LobeCase& c, std::ostream* out) { *out << c.name; }
+void PrintTo(const LobeCase& c, std::ostream* out) {
+  *out << c.name;
+}
 
-std::string name_of(const testing::TestParamInfo<LobeCase>& info) { return info.param.name; }
+std::string name_of(const testing::TestParamInfo<LobeCase>& info) {
+  return info.param.name;
+}
 
 INSTANTIATE_TEST_SUITE_P(All, LobeSampling, testing::ValuesIn(lobe_cases()), name_of);
 

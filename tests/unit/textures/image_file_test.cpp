@@ -22,7 +22,9 @@ void write_image(const std::string& path, int width, int height, int channels, O
   out->close();
 }
 
-float srgb(float v) { return std::pow((v + 0.055f) / 1.055f, 2.4f); }
+float srgb(float v) {
+  return std::pow((v + 0.055f) / 1.055f, 2.4f);
+}
 
 class ImageFile : public testing::Test {
  protected:
@@ -34,7 +36,8 @@ TEST_F(ImageFile, EightBitIsSrgbUnlessToldOtherwise) {
     write_image<uint8_t>(scene_.path(name), 1, 1, 3, OIIO::TypeDesc::UINT8, {255, 128, 0});
     const auto automatic = read_image(scene_.path(name), false, {});
     ASSERT_TRUE(automatic.ok()) << automatic.status();
-    EXPECT_THAT(automatic->values, testing::Pointwise(testing::FloatNear(1e-6f), {1.0f, srgb(128 / 255.f), 0.0f}));
+    EXPECT_THAT(automatic->values,
+                testing::Pointwise(testing::FloatNear(1e-6f), {1.0f, srgb(128 / 255.f), 0.0f}));
     const auto linear = read_image(scene_.path(name), false, {Encoding::kLinear});
     EXPECT_THAT(linear->values, testing::Pointwise(testing::FloatNear(1e-6f), {1.0f, 128 / 255.f, 0.0f}));
     const auto gamma = read_image(scene_.path(name), false, {Encoding::kGamma, 2});

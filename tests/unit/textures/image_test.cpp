@@ -12,15 +12,18 @@ namespace {
 
 const Vec2f kPoint(0, 0);
 
-Texels grey(int width, int height, std::vector<float> values) { return {width, height, 1, std::move(values)}; }
+Texels grey(int width, int height, std::vector<float> values) {
+  return {width, height, 1, std::move(values)};
+}
 
 float at(const Image& image, float s, float t, Wrap wrap = Wrap::kRepeat, Filter filter = Filter::kBilinear) {
   return image.lookup({s, t}, kPoint, kPoint, {wrap, filter}).x;
 }
 
 TEST(Image, OriginIsTheLowerLeftCorner) {
-  const Image image(grey(2, 2, {1, 2,    // the upper row
-                                3, 4}));
+  const Image image(grey(2, 2,
+                         {1, 2,  // the upper row
+                          3, 4}));
   EXPECT_EQ(at(image, 0.25f, 0.25f), 3);
   EXPECT_EQ(at(image, 0.75f, 0.25f), 4);
   EXPECT_EQ(at(image, 0.25f, 0.75f), 1);
@@ -35,7 +38,7 @@ TEST(Image, BilinearBetweenTexelCentres) {
 
 TEST(Image, WrapModes) {
   const Image image(grey(2, 1, {1, 3}));
-  EXPECT_EQ(at(image, 0, 0.5f, Wrap::kRepeat), 2);   // half of the last, half of the first
+  EXPECT_EQ(at(image, 0, 0.5f, Wrap::kRepeat), 2);  // half of the last, half of the first
   EXPECT_EQ(at(image, 0, 0.5f, Wrap::kClamp), 1);
   EXPECT_EQ(at(image, 0, 0.5f, Wrap::kBlack), 0.5f);
   EXPECT_EQ(at(image, 5.25f, -7.5f, Wrap::kRepeat), 1);
@@ -78,7 +81,8 @@ TEST(Downsample, EveryLevelHasTheMeanOfTheImage) {
       texels = halved(texels);
       double sum = 0;
       for (const float v : texels.values) sum += v;
-      EXPECT_NEAR(sum / texels.values.size(), mean, 1e-4 * mean) << width << "x" << height << " at " << texels.width;
+      EXPECT_NEAR(sum / texels.values.size(), mean, 1e-4 * mean)
+          << width << "x" << height << " at " << texels.width;
     }
   }
 }
@@ -107,14 +111,16 @@ TEST(Image, TrilinearBlursBothAxesAndEwaOnlyTheLongOne) {
   EXPECT_NEAR(blurred.x, 0.5f, 0.01f);
   EXPECT_GT(sharp.x, 0.8f);
   // The same footprint turned by a quarter averages the stripes.
-  EXPECT_NEAR(image.lookup(st, {4.0f / 64, 0}, {0, 0.25f / 64}, {Wrap::kRepeat, Filter::kEwa, 64}).x, 0.5f, 0.05f);
+  EXPECT_NEAR(image.lookup(st, {4.0f / 64, 0}, {0, 0.25f / 64}, {Wrap::kRepeat, Filter::kEwa, 64}).x, 0.5f,
+              0.05f);
 }
 
 TEST(Image, EwaOfALinearRampIsTheRamp) {
   constexpr int kSize = 64;
   Texels texels = grey(kSize, kSize, {});
   for (int y = 0; y < kSize; ++y) {
-    for (int x = 0; x < kSize; ++x) texels.values.push_back((x + 0.5f) / kSize + 2 * (kSize - y - 0.5f) / kSize);
+    for (int x = 0; x < kSize; ++x)
+      texels.values.push_back((x + 0.5f) / kSize + 2 * (kSize - y - 0.5f) / kSize);
   }
   const Image image(std::move(texels));
   const Vec2f dx(0.05f, 0.02f), dy(-0.01f, 0.04f);

@@ -31,7 +31,9 @@ class Spectrum : public testing::Test {
   SceneDescription description_;
 };
 
-TEST_F(Spectrum, RgbIsItself) { expect_near(color("\"rgb Kd\" [0.1 0.2 0.3]"), {0.1f, 0.2f, 0.3f}, 1e-7f); }
+TEST_F(Spectrum, RgbIsItself) {
+  expect_near(color("\"rgb Kd\" [0.1 0.2 0.3]"), {0.1f, 0.2f, 0.3f}, 1e-7f);
+}
 
 TEST_F(Spectrum, XyzOfTheRedPrimary) {
   expect_near(color("\"xyz Kd\" [0.412453 0.212671 0.019334]"), {1, 0, 0}, 1e-4f);

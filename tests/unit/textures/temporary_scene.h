@@ -1,7 +1,6 @@
 #pragma once
 // A folder of its own with a scene file in it, read by the real parser.
 #include <gtest/gtest.h>
-
 #include <unistd.h>
 
 #include <filesystem>
@@ -17,9 +16,9 @@ class TemporaryScene {
  public:
   TemporaryScene() {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              ("penumbra_" + std::string(test->test_suite_name()) + "_" + test->name() + "_" +
-               std::to_string(::getpid()));
+    folder_ =
+        std::filesystem::path(testing::TempDir()) / ("penumbra_" + std::string(test->test_suite_name()) +
+                                                     "_" + test->name() + "_" + std::to_string(::getpid()));
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
   }

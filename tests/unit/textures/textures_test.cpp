@@ -27,8 +27,8 @@ class TexturesTest : public testing::Test {
   absl::StatusOr<Textures> build(const std::string& text, bool strict = false) {
     const SceneDescription description = scene_.parse(text);
     last_ = static_cast<int>(description.textures.size()) - 1;
-    return Textures::build(description, scene_.files(), std::vector<bool>(description.textures.size(), true), strict,
-                           warnings_);
+    return Textures::build(description, scene_.files(), std::vector<bool>(description.textures.size(), true),
+                           strict, warnings_);
   }
   Rgb color(const std::string& text, const SurfacePoint& point) {
     const auto textures = build(text);
@@ -49,13 +49,16 @@ TEST_F(TexturesTest, ConstantsNeedNoTexture) {
 TEST_F(TexturesTest, ConstantScaleMix) {
   const std::string two = R"(Texture "a" "spectrum" "constant" "rgb value" [1 2 3]
     Texture "b" "spectrum" "constant" "rgb value" [2 4 10] )";
-  EXPECT_EQ(color(two + R"(Texture "c" "spectrum" "scale" "texture tex1" "a" "texture tex2" "b")", point_at(0, 0)),
-            Rgb(2, 8, 30));
-  EXPECT_EQ(color(two + R"(Texture "c" "spectrum" "scale" "texture tex" "a" "float scale" 3)", point_at(0, 0)),
-            Rgb(3, 6, 9));
-  EXPECT_EQ(color(two + R"(Texture "c" "spectrum" "mix" "texture tex1" "a" "texture tex2" "b" "float amount" 0.25)",
-                  point_at(0, 0)),
-            Rgb(1.25f, 2.5f, 4.75f));
+  EXPECT_EQ(
+      color(two + R"(Texture "c" "spectrum" "scale" "texture tex1" "a" "texture tex2" "b")", point_at(0, 0)),
+      Rgb(2, 8, 30));
+  EXPECT_EQ(
+      color(two + R"(Texture "c" "spectrum" "scale" "texture tex" "a" "float scale" 3)", point_at(0, 0)),
+      Rgb(3, 6, 9));
+  EXPECT_EQ(
+      color(two + R"(Texture "c" "spectrum" "mix" "texture tex1" "a" "texture tex2" "b" "float amount" 0.25)",
+            point_at(0, 0)),
+      Rgb(1.25f, 2.5f, 4.75f));
 }
 
 TEST_F(TexturesTest, FloatTexturesAreGrey) {
@@ -74,8 +77,9 @@ TEST_F(TexturesTest, Bilerp) {
 }
 
 TEST_F(TexturesTest, UvWithItsMapping) {
-  EXPECT_EQ(color(R"(Texture "a" "spectrum" "uv" "float uscale" 2 "float vdelta" 0.25)", point_at(0.75f, 0.5f)),
-            Rgb(0.5f, 0.75f, 0));
+  EXPECT_EQ(
+      color(R"(Texture "a" "spectrum" "uv" "float uscale" 2 "float vdelta" 0.25)", point_at(0.75f, 0.5f)),
+      Rgb(0.5f, 0.75f, 0));
 }
 
 TEST_F(TexturesTest, CheckerboardAndItsFilter) {
@@ -162,7 +166,8 @@ TEST_F(TexturesTest, FaultsNameTheirPlace) {
   const std::string image = "Texture \"a\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\"\n";
   EXPECT_THAT(message_of(build(image + "\"string wrap\" \"spiral\"").status()), HasSubstr("scene.pbrt:3:"));
   EXPECT_THAT(message_of(build(image + "\"string encoding\" \"jazz\"").status()), HasSubstr("jazz"));
-  EXPECT_THAT(message_of(build(image + "\"string mapping\" \"inside-out\"").status()), HasSubstr("inside-out"));
+  EXPECT_THAT(message_of(build(image + "\"string mapping\" \"inside-out\"").status()),
+              HasSubstr("inside-out"));
   EXPECT_THAT(message_of(build(image + "\"float maxanisotropy\" 0").status()), HasSubstr("maxanisotropy"));
 }
 
