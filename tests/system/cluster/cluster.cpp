@@ -1,0 +1,234 @@
+#include "tests/system/cluster/cluster.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+#include "proto/channel.h"
+#include "proto/convert.h"
+#include "proto/rpc_status.h"
+
+namespace penumbra {
+namespace {
+
+void nap() {
+  std::this_thread::sleep_for(std::chrono::milliseconds(10));
+}
+
+std::string read_text(const std::string& path) {
+  std::ifstream in(path);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+}  // namespace
+
+double steady_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+Process::Process(const std::vector<std::string>& command, const std::string& stderr_path) {
+  std::vector<char*> arguments;
+  for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  pid_ = fork();
+  if (pid_ != 0) return;
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const int log = open(stderr_path.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
+  dup2(log, STDERR_FILENO);
+  dup2(log, STDOUT_FILENO);
+  execv(arguments[0], arguments.data());
+  _exit(127);
+}
+
+Process::~Process() {
+  kill_hard();
+}
+
+void Process::signal(int number) const {
+  if (pid_ > 0) kill(pid_, number);
+}
+
+void Process::kill_hard() {
+  if (pid_ <= 0) return;
+  kill(pid_, SIGKILL);
+  waitpid(pid_, nullptr, 0);
+  pid_ = -1;
+}
+
+std::optional<int> Process::wait(double seconds) {
+  for (const double end = steady_seconds() + seconds; steady_seconds() < end; nap()) {
+    int status = 0;
+    if (waitpid(pid_, &status, WNOHANG) != pid_) continue;
+    pid_ = -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+  return std::nullopt;
+}
+
+Cluster::Cluster(const std::string& name)
+    : root_(std::filesystem::path(testing::TempDir()) /
+            ("penumbra-" + name + "-" + std::to_string(getpid()))) {
+  std::filesystem::remove_all(root_);
+  std::filesystem::create_directories(root_);
+}
+
+Cluster::~Cluster() {
+  workers_.clear();
+  server_.reset();
+  if (testing::Test::HasFailure()) std::fprintf(stderr, "%s\n", server_log().c_str());
+  std::error_code error;
+  std::filesystem::remove_all(root_, error);
+}
+
+std::string Cluster::server_log() const {
+  return read_text(path("server.log"));
+}
+
+void Cluster::start_server() {
+  const std::string file = path("address");
+  std::filesystem::remove(file);
+  server_ =
+      std::make_unique<Process>(std::vector<std::string>{PENUMBRA_SERVER, "--listen", address_, "--store",
+                                                         path("store"), "--address-file", file},
+                                path("server.log"));
+  for (const double end = steady_seconds() + 30; !std::filesystem::exists(file); nap())
+    ASSERT_LT(steady_seconds(), end) << server_log();
+  std::stringstream(read_text(file)) >> address_;
+  const auto channel = *open_channel(address_, {});
+  render_ = v1::Render::NewStub(channel);
+  blobs_ = v1::Blobs::NewStub(channel);
+  worker_stub_ = v1::Worker::NewStub(channel);
+}
+
+Process& Cluster::start_worker(int threads, const std::string& cache) {
+  workers_.push_back(std::make_unique<Process>(
+      std::vector<std::string>{PENUMBRA_FAKE_WORKER, "--server", address_, "--threads",
+                               std::to_string(threads), "--cache", path(cache)},
+      path("worker.log")));
+  return *workers_.back();
+}
+
+grpc::Status Cluster::upload(const Digest& digest, const std::string& bytes) {
+  grpc::ClientContext context;
+  v1::UploadResponse response;
+  const auto writer = blobs_->Upload(&context, &response);
+  v1::UploadChunk chunk;
+  chunk.set_digest(digest);
+  chunk.set_size(bytes.size());
+  chunk.set_data(bytes);
+  writer->Write(chunk);
+  writer->WritesDone();
+  return writer->Finish();
+}
+
+Digest Cluster::upload_scene(const std::string& text) {
+  BundleIndex index;
+  index.main = "scene.pbrt";
+  index.entries = {{"scene.pbrt", "scene.pbrt", sha256(text), text.size()}};
+  const std::string json = serialize(index);
+  EXPECT_TRUE(upload(sha256(text), text).ok());
+  EXPECT_TRUE(upload(sha256(json), json).ok());
+  return sha256(json);
+}
+
+JobSpec Cluster::spec(const Digest& bundle) const {
+  JobSpec spec;
+  spec.scene = "/scene.pbrt";
+  spec.bundle = bundle;
+  spec.mixes = {*parse_mix("sa:1"), *parse_mix("bsdf:2")};
+  spec.budget = SppBudget{32};
+  spec.width = 96;
+  spec.height = 64;
+  spec.crop = {0, 0, 96, 64};
+  spec.tile = 32;
+  spec.seed = 5;
+  return spec;
+}
+
+JobId Cluster::submit(const JobSpec& spec) {
+  v1::SubmitRequest request;
+  *request.mutable_spec() = to_proto(spec);
+  static int counter = 0;
+  request.set_request_id("r" + std::to_string(counter++));
+  grpc::ClientContext context;
+  v1::SubmitResponse response;
+  const grpc::Status status = render_->Submit(&context, request, &response);
+  EXPECT_TRUE(status.ok()) << status.error_message();
+  return response.job();
+}
+
+JobStatus Cluster::status(const JobId& job) {
+  v1::JobRequest request;
+  request.set_job(job);
+  grpc::ClientContext context;
+  context.set_wait_for_ready(true);  // the server may be restarting
+  context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(30));
+  v1::JobStatus response;
+  const grpc::Status rpc = render_->GetJob(&context, request, &response);
+  EXPECT_TRUE(rpc.ok()) << rpc.error_message();
+  const auto converted = from_proto(response);
+  EXPECT_TRUE(converted.ok()) << converted.status();
+  return converted.value_or(JobStatus{});
+}
+
+JobStatus Cluster::wait_until(const JobId& job, double seconds,
+                              const std::function<bool(const JobStatus&)>& wanted) {
+  const double end = steady_seconds() + seconds;
+  for (;; nap()) {
+    JobStatus now = status(job);
+    if (wanted(now)) return now;
+    if (steady_seconds() < end && !testing::Test::HasFailure()) continue;
+    ADD_FAILURE() << "job is " << name_of(now.state) << " " << now.tasks_done << "/" << now.tasks_total << " "
+                  << now.message;
+    return now;
+  }
+}
+
+JobStatus Cluster::wait_end(const JobId& job, double seconds) {
+  return wait_until(job, seconds, [](const JobStatus& status) { return is_final(status.state); });
+}
+
+RunSummary Cluster::fetch(const JobId& job, Picture& picture) {
+  v1::FetchFramesRequest request;
+  request.set_job(job);
+  grpc::ClientContext context;
+  const auto reader = render_->FetchFrames(&context, request);
+  v1::FetchFramesResponse message;
+  RunSummary summary;
+  bool ended = false;
+  while (reader->Read(&message)) {
+    if (message.has_summary()) {
+      auto converted = from_proto(message.summary());
+      EXPECT_TRUE(converted.ok()) << converted.status();
+      if (converted.ok()) summary = *std::move(converted);
+      for (auto* layer : {&picture.mean, &picture.variance, &picture.samples})
+        layer->assign(summary.mixes.size(), {});
+    } else if (message.has_frame()) {
+      const v1::FrameChunk& chunk = message.frame();
+      auto& mean = picture.mean.at(chunk.mix());
+      auto& variance = picture.variance.at(chunk.mix());
+      auto& samples = picture.samples.at(chunk.mix());
+      mean.insert(mean.end(), chunk.mean().begin(), chunk.mean().end());
+      variance.insert(variance.end(), chunk.variance().begin(), chunk.variance().end());
+      samples.insert(samples.end(), chunk.samples().begin(), chunk.samples().end());
+    } else {
+      ended = message.has_end();
+    }
+  }
+  EXPECT_TRUE(reader->Finish().ok());
+  EXPECT_TRUE(ended);
+  return summary;
+}
+
+}  // namespace penumbra

@@ -1,0 +1,142 @@
+#include "worker/agent/task_board.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "worker/agent/flags.h"
+#include "worker/agent/identity.h"
+
+namespace penumbra {
+namespace {
+
+DesiredState leases(const std::vector<LeaseId>& ids, bool described = true) {
+  DesiredState desired;
+  JobSpec spec;
+  desired.jobs = {{"j", spec}};
+  for (const LeaseId& id : ids) {
+    TileTask task;
+    task.id = id.task;
+    desired.leases.push_back({id, described ? std::optional(task) : std::nullopt});
+  }
+  return desired;
+}
+
+WorkerState told(TaskBoard& board) {
+  WorkerState state;
+  board.describe(state);
+  return state;
+}
+
+TEST(TaskBoard, TasksGoFromLeaseToAcknowledgement) {
+  TaskBoard board(4);
+  const LeaseId id{"j", 1, 1};
+  WorkerState state = told(board);
+  EXPECT_EQ(state.wanted, 4u);
+  EXPECT_TRUE(board.apply(leases({id}), state).empty());
+  EXPECT_FALSE(told(board).held.at(0).begun);
+  const auto assignment = board.take();
+  EXPECT_TRUE(told(board).held.at(0).begun);
+  auto finished = std::make_shared<Finished>();
+  finished->report.lease = id;
+  EXPECT_FALSE(board.wait_for_news(0));
+  board.complete(*assignment, finished);
+  EXPECT_TRUE(board.wait_for_news(0));
+  state = told(board);
+  EXPECT_EQ(state.completed.size(), 1u);
+  EXPECT_TRUE(state.held.empty());
+  // Not acknowledged and still wanted: the server has lost the blob.
+  EXPECT_EQ(board.apply(leases({id}, false), state).size(), 1u);
+  DesiredState acknowledged;
+  acknowledged.acknowledged = {id};
+  board.apply(acknowledged, told(board));
+  EXPECT_TRUE(board.empty());
+}
+
+TEST(TaskBoard, WhatIsNoLongerDesiredIsCancelled) {
+  TaskBoard board(4);
+  const LeaseId begun{"j", 1, 1}, waiting{"j", 2, 1};
+  board.apply(leases({begun, waiting}), told(board));
+  const auto assignment = board.take();
+  EXPECT_EQ(assignment->lease, begun);
+  board.apply(DesiredState{}, told(board));
+  EXPECT_TRUE(assignment->cancel);
+  EXPECT_TRUE(told(board).held.empty());
+  board.drop(*assignment);
+  EXPECT_TRUE(board.empty());
+}
+
+TEST(TaskBoard, AnAnswerToAnOlderStateDropsNothingNewer) {
+  TaskBoard board(4);
+  const WorkerState before = told(board);
+  const LeaseId id{"j", 1, 1};
+  board.apply(leases({id}), before);
+  board.apply(DesiredState{}, before);  // answers a call that did not tell of the lease
+  EXPECT_EQ(told(board).held.size(), 1u);
+}
+
+TEST(TaskBoard, DrainingHandsBackAndTakesNothingNew) {
+  TaskBoard board(4);
+  const LeaseId begun{"j", 1, 1}, waiting{"j", 2, 1}, late{"j", 3, 1};
+  board.apply(leases({begun, waiting}), told(board));
+  const auto assignment = board.take();
+  board.drain();
+  WorkerState state = told(board);
+  EXPECT_TRUE(state.draining);
+  EXPECT_EQ(state.wanted, 0u);
+  ASSERT_EQ(state.failed.size(), 1u);
+  EXPECT_EQ(state.failed[0].lease, waiting);
+  EXPECT_EQ(state.failed[0].reason, TaskFailure::kReturned);
+  board.apply(leases({begun, late}), state);
+  EXPECT_EQ(told(board).failed.size(), 2u);
+  EXPECT_FALSE(assignment->cancel);
+  board.abandon();
+  EXPECT_TRUE(assignment->cancel);
+  EXPECT_EQ(told(board).failed.size(), 3u);
+}
+
+TEST(TaskBoard, ClosingWakesTheThreads) {
+  TaskBoard board(1);
+  std::thread thread([&] { EXPECT_EQ(board.take(), nullptr); });
+  board.close();
+  thread.join();
+}
+
+TEST(TaskBoard, ALoadIsReportedOnce) {
+  TaskBoard board(1);
+  board.loaded({"j", {}, {}});
+  board.loaded({"j", {}, {}});
+  WorkerState state = told(board);
+  EXPECT_EQ(state.loaded.size(), 1u);
+  DesiredState desired;
+  desired.acknowledged_loads = {"j"};
+  board.apply(desired, state);
+  board.loaded({"j", {}, {}});
+  EXPECT_TRUE(told(board).loaded.empty());
+}
+
+TEST(Flags, AmountsAreReadOrRefusedByName) {
+  EXPECT_EQ(*parse_duration_flag("--drain-after", "500ms"), 0.5);
+  EXPECT_EQ(*parse_duration_flag("--drain-after", "2m"), 120);
+  EXPECT_EQ(*parse_bytes_flag("--max-memory", "8G"), uint64_t{8} << 30);
+  for (const char* bad : {"", "0s", "-1s", "5", "nans", "infs", "1x", "s"}) {
+    const auto refused = parse_duration_flag("--drain-after", bad);
+    EXPECT_TRUE(absl::IsInvalidArgument(refused.status())) << bad;
+  }
+  EXPECT_FALSE(parse_bytes_flag("--max-memory", "8").ok());
+}
+
+TEST(Identity, SlotsDifferSideBySideAndAreTakenAgain) {
+  const std::string cache = testing::TempDir() + "/slots-test";
+  auto first = std::make_unique<Slot>(*Slot::take(cache));
+  const auto second = Slot::take(cache);
+  EXPECT_EQ(first->number(), 0);
+  EXPECT_EQ(second->number(), 1);
+  first.reset();
+  EXPECT_EQ(Slot::take(cache)->number(), 0);
+  EXPECT_NE(make_worker_info(1).id, make_worker_info(1).id);
+  EXPECT_EQ(make_worker_info(1).id.size(), 36u);
+}
+
+}  // namespace
+}  // namespace penumbra
