@@ -31,7 +31,8 @@ class Timer {
   std::pair<double, double> time(const std::vector<ShadingPoint>& points) {
     double rays = 0, lines = 0;
     for (size_t first = 0; first < points.size(); first += kChunk) {
-      const std::span<const ShadingPoint> chunk(points.data() + first, std::min(kChunk, points.size() - first));
+      const std::span<const ShadingPoint> chunk(points.data() + first,
+                                                std::min(kChunk, points.size() - first));
       std::vector<double> ray_times, line_times;
       trace_rays(chunk), trace_lines(chunk);
       for (int r = 0; r < repetitions_; ++r) {

@@ -22,11 +22,10 @@ class Generator {
 
   std::optional<ShadingPoint> at_pixel(float px, float py) {
     const auto& camera = scene_.camera;
-    const float aspect = static_cast<float>(camera.width) / static_cast<float>(camera.height);
     Ray ray;
     ray.origin = camera.origin;
-    ray.direction = camera.forward + camera.right * ((2 * px / camera.width - 1) * aspect) +
-                    camera.up * (1 - 2 * py / camera.height);
+    ray.direction = camera.forward + camera.right * (2 * px / static_cast<float>(camera.width) - 1) +
+                    camera.up * (1 - 2 * py / static_cast<float>(camera.height));
     ray.near = 0;
     ray.far = std::numeric_limits<float>::infinity();
     const auto hit = geometry_.intersect(ray, counters_);
@@ -52,7 +51,8 @@ class Generator {
     SurfacePoint s;
     s.p = *p[0] * b[0] + *p[1] * b[1] + *p[2] * b[2];
     for (int k = 0; k < 3; ++k) {
-      const float size = std::abs(b[0] * (*p[0])[k]) + std::abs(b[1] * (*p[1])[k]) + std::abs(b[2] * (*p[2])[k]);
+      const float size =
+          std::abs(b[0] * (*p[0])[k]) + std::abs(b[1] * (*p[1])[k]) + std::abs(b[2] * (*p[2])[k]);
       s.p_error[k] = static_cast<float>(7 * u / (1 - 7 * u)) * size;
     }
     s.ng = (*p[1] - *p[0]).cross(*p[2] - *p[0]).normalized();
@@ -82,11 +82,18 @@ class Generator {
 
 }  // namespace
 
-std::vector<ShadingPoint> tile_coherent_points(const Geometry& geometry, const BenchScene& scene, size_t count,
-                                               int lines, uint32_t seed) {
+std::vector<MeshInput> BenchScene::inputs() const {
+  std::vector<MeshInput> result;
+  for (const TriangleMesh& mesh : meshes) result.push_back({&mesh});
+  return result;
+}
+
+std::vector<ShadingPoint> tile_coherent_points(const Geometry& geometry, const BenchScene& scene,
+                                               size_t count, int lines, uint32_t seed) {
   Generator generator(geometry, scene, lines, seed);
   std::vector<ShadingPoint> points;
-  const int across = (scene.camera.width + kTile - 1) / kTile, down = (scene.camera.height + kTile - 1) / kTile;
+  const int across = (scene.camera.width + kTile - 1) / kTile,
+            down = (scene.camera.height + kTile - 1) / kTile;
   size_t tiles_without = 0;
   while (points.size() < count && tiles_without < 100000) {
     const int tx = generator.below(across), ty = generator.below(down);
@@ -94,7 +101,8 @@ std::vector<ShadingPoint> tile_coherent_points(const Geometry& geometry, const B
     for (int k = 0; k < kTile * kTile && points.size() < count; ++k) {
       const float px = static_cast<float>(tx * kTile + k % kTile) + generator.uniform();
       const float py = static_cast<float>(ty * kTile + k / kTile) + generator.uniform();
-      if (px >= static_cast<float>(scene.camera.width) || py >= static_cast<float>(scene.camera.height)) continue;
+      if (px >= static_cast<float>(scene.camera.width) || py >= static_cast<float>(scene.camera.height))
+        continue;
       if (auto point = generator.at_pixel(px, py)) {
         points.push_back(std::move(*point));
         tiles_without = 0;

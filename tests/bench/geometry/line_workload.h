@@ -8,8 +8,9 @@ namespace penumbra::bench {
 
 /// A scene reduced to what the workload needs.
 struct BenchScene {
+  /// The direction through pixel (px,py) is forward + (2px/width-1) right + (1-2py/height) up.
   struct Camera {
-    Vec3f origin, right, up, forward;  ///< directions through the image's middle and by one half-height
+    Vec3f origin, right, up, forward;
     int width = 0, height = 0;
   };
   struct Quad {
@@ -18,11 +19,12 @@ struct BenchScene {
     uint32_t primitives = 0;
   };
   std::vector<TriangleMesh> meshes;
-  std::vector<uint32_t> placed;  ///< object of each mesh's instance list; see objects
   std::vector<ObjectInput> objects;
   std::vector<InstanceInput> instances;
   std::vector<Quad> lights;
   Camera camera;
+
+  std::vector<MeshInput> inputs() const;
 };
 
 /// One shading point: lines towards one light and a point on each of them.
@@ -33,7 +35,7 @@ struct ShadingPoint {
 
 /// Camera hits in 16×16 tiles drawn at random, pixel by pixel within a tile, each with `lines` random chords
 /// (parallel to either edge) of a random light that the hit faces, clipped to its horizon.
-std::vector<ShadingPoint> tile_coherent_points(const Geometry& geometry, const BenchScene& scene, size_t count,
-                                               int lines, uint32_t seed);
+std::vector<ShadingPoint> tile_coherent_points(const Geometry& geometry, const BenchScene& scene,
+                                               size_t count, int lines, uint32_t seed);
 
 }  // namespace penumbra::bench
