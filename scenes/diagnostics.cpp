@@ -16,8 +16,10 @@ std::string printable(std::string_view text) {
     if (out.size() >= kMostShown) return out + "…";
     const auto byte = static_cast<unsigned char>(text[0]);
     const size_t length = byte < 0x20 || byte == 0x7f ? 0 : utf8_sequence(text);
-    if (length == 0) out += fmt::format("\\x{:02x}", byte);
-    else out += text.substr(0, length);
+    if (length == 0)
+      out += fmt::format("\\x{:02x}", byte);
+    else
+      out += text.substr(0, length);
     text.remove_prefix(length == 0 ? 1 : length);
   }
   return out;

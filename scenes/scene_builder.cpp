@@ -1,6 +1,7 @@
 #include "scenes/scene_builder.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "scenes/film_size.h"
 #include "scenes/transforms.h"
@@ -24,8 +25,9 @@ absl::Status SceneBuilder::set_transform(const Matrix& m, FileLoc loc) {
 
 absl::Status SceneBuilder::concatenate(const Matrix& m, FileLoc loc) {
   Placement& ctm = transforms_.ctm;
+  const bool moving = ctm.moving();
   if (transforms_.start_active) ctm.start = m * ctm.start;
-  if (transforms_.end_active) ctm.end = m * ctm.end;
+  if (transforms_.end_active) ctm.end = transforms_.start_active && !moving ? ctm.start : m * ctm.end;
   if (!is_finite(ctm.start) || !is_finite(ctm.end))
     return diagnostics_.error(loc, "the current transform is no longer finite");
   return absl::OkStatus();
@@ -60,26 +62,36 @@ absl::Status SceneBuilder::set_transform_times(double start, double end, FileLoc
 
 namespace {
 
-absl::StatusOr<Placement> checked_placement(const std::optional<Matrix>& start,
-                                            const std::optional<Matrix>& end, std::string_view what,
-                                            FileLoc loc, const Diagnostics& diagnostics) {
-  if (!start || !end)
+absl::StatusOr<Matrix> invertible(const std::optional<Matrix>& m, std::string_view what, FileLoc loc,
+                                  const Diagnostics& diagnostics) {
+  if (!m)
     return diagnostics.error(loc, "this {}'s transform is not affine (its last column is not 0 0 0 1)", what);
-  if (is_singular(*start) || is_singular(*end))
-    return diagnostics.error(loc, "this {}'s transform is singular", what);
-  return Placement{*start, *end};
+  if (is_singular(*m)) return diagnostics.error(loc, "this {}'s transform is singular", what);
+  return *m;
+}
+
+/// The placement with `part` taken of each end's matrix.
+template <class Part>
+absl::StatusOr<Placement> checked(const Placement& ctm, Part&& part, std::string_view what, FileLoc loc,
+                                  const Diagnostics& diagnostics) {
+  Placement placement;
+  ASSIGN_OR_RETURN(placement.start, invertible(part(ctm.start), what, loc, diagnostics));
+  placement.end = placement.start;
+  if (ctm.moving()) {
+    ASSIGN_OR_RETURN(placement.end, invertible(part(ctm.end), what, loc, diagnostics));
+  }
+  return placement;
 }
 
 }  // namespace
 
 absl::StatusOr<Placement> SceneBuilder::placement(std::string_view what, FileLoc loc) const {
-  const Placement& ctm = transforms_.ctm;
-  return checked_placement(as_affine(ctm.start), as_affine(ctm.end), what, loc, diagnostics_);
+  return checked(transforms_.ctm, as_affine, what, loc, diagnostics_);
 }
 
 absl::StatusOr<Placement> SceneBuilder::placement_at_infinity(std::string_view what, FileLoc loc) const {
-  const Placement& ctm = transforms_.ctm;
-  return checked_placement(linear_part(ctm.start), linear_part(ctm.end), what, loc, diagnostics_);
+  const auto linear = [](const Matrix& m) { return std::optional(linear_part(m)); };
+  return checked(transforms_.ctm, linear, what, loc, diagnostics_);
 }
 
 // ---- the render's options ----

@@ -6,10 +6,10 @@ namespace penumbra {
 namespace {
 
 constexpr size_t kDeepestInclude = 64;
-// Files that include one another twice each double the text at every level; a scene of such files is an
-// attack or a mistake. Repeating a file instead of instancing it stays possible up to here.
-constexpr uint64_t kMostRepeatedBytes = uint64_t{1} << 30;
-constexpr uint64_t kCostOfOneInclude = 4096;  // finding and entering a file, in bytes lexed
+// Files that include one another twice each double the text at every level. Scenes do such things on
+// purpose (a Menger sponge of nested includes reads 0.7 GB); some seconds of it are granted.
+constexpr uint64_t kMostRepeatedBytes = uint64_t{2} << 30;
+constexpr uint64_t kCostOfOneInclude = 1024;  // finding and entering a file, in bytes lexed
 
 }  // namespace
 
@@ -19,39 +19,45 @@ absl::Status TokenStream::open_main(const std::string& name) {
   if (!path.ok()) return invalid_input("{}: {}", name, message_of(path.status()));
   absl::StatusOr<std::string> bytes = read_file(*path);
   if (!bytes.ok()) return invalid_input("{}: {}", name, message_of(bytes.status()));
-  const auto [entry, fresh] = texts_.emplace(*path, Text{*std::move(bytes), 0});
+  const Text& text = texts_.emplace(*path, Text{*std::move(bytes), 0}).first->second;
   diagnostics_.files.push_back(name);
-  open_.push_back({Lexer(entry->second.bytes, 0), &entry->first});
+  open_.push_back({Lexer(text.bytes, text.file), &text});
   return absl::OkStatus();
 }
 
-absl::StatusOr<const TokenStream::Text*> TokenStream::text_of(const std::string& name,
-                                                              const std::string& path, FileLoc loc) {
-  if (const auto known = texts_.find(path); known != texts_.end()) {
-    repeated_bytes_ += known->second.bytes.size() + kCostOfOneInclude;
-    if (repeated_bytes_ > kMostRepeatedBytes)
-      return diagnostics_.error(loc, "files included again and again add up to more than {} bytes",
-                                kMostRepeatedBytes);
-    return &known->second;
-  }
-  absl::StatusOr<std::string> bytes = read_file(path);
+absl::StatusOr<const TokenStream::Text*> TokenStream::read_text(const std::string& name, FileLoc loc) {
+  const absl::StatusOr<std::string> path = files_.path_of(name);
+  if (!path.ok())
+    return diagnostics_.error(loc, "cannot include '{}': {}", printable(name), message_of(path.status()));
+  if (const auto known = texts_.find(*path); known != texts_.end()) return &known->second;
+  absl::StatusOr<std::string> bytes = read_file(*path);
   if (!bytes.ok())
     return diagnostics_.error(loc, "cannot include '{}': {}", printable(name), message_of(bytes.status()));
   const auto file = static_cast<uint32_t>(diagnostics_.files.size());
   diagnostics_.files.push_back(name);
-  return &texts_.emplace(path, Text{*std::move(bytes), file}).first->second;
+  return &texts_.emplace(*path, Text{*std::move(bytes), file}).first->second;
+}
+
+absl::StatusOr<const TokenStream::Text*> TokenStream::text_of(const std::string& name, FileLoc loc) {
+  const auto known = texts_by_name_.find(name);
+  if (known == texts_by_name_.end()) {
+    ASSIGN_OR_RETURN(const Text* const text, read_text(name, loc));
+    return texts_by_name_[name] = text;
+  }
+  repeated_bytes_ += known->second->bytes.size() + kCostOfOneInclude;
+  if (repeated_bytes_ > kMostRepeatedBytes)
+    return diagnostics_.error(loc, "files included again and again add up to more than {} bytes",
+                              kMostRepeatedBytes);
+  return known->second;
 }
 
 absl::Status TokenStream::enter(const std::string& name, FileLoc loc) {
   if (open_.size() >= kDeepestInclude)
     return diagnostics_.error(loc, "files are included more than {} deep", kDeepestInclude);
-  const absl::StatusOr<std::string> path = files_.path_of(name);
-  if (!path.ok())
-    return diagnostics_.error(loc, "cannot include '{}': {}", printable(name), message_of(path.status()));
+  ASSIGN_OR_RETURN(const Text* const text, text_of(name, loc));
   for (const Source& source : open_)
-    if (*source.path == *path) return diagnostics_.error(loc, "'{}' includes itself", printable(name));
-  ASSIGN_OR_RETURN(const Text* const text, text_of(name, *path, loc));
-  open_.push_back({Lexer(text->bytes, text->file), &texts_.find(*path)->first});
+    if (source.text == text) return diagnostics_.error(loc, "'{}' includes itself", printable(name));
+  open_.push_back({Lexer(text->bytes, text->file), text});
   return absl::OkStatus();
 }
 

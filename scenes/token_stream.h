@@ -36,24 +36,26 @@ class TokenStream {
   const absl::Status& status() const { return status_; }
 
  private:
-  struct Source {
-    Lexer lexer;
-    const std::string* path;
-  };
   struct Text {
     std::string bytes;
     uint32_t file = 0;
   };
+  struct Source {
+    Lexer lexer;
+    const Text* text;
+  };
 
   Token read();
   Token fail(absl::Status status, FileLoc loc);
-  absl::StatusOr<const Text*> text_of(const std::string& name, const std::string& path, FileLoc loc);
+  absl::StatusOr<const Text*> text_of(const std::string& name, FileLoc loc);
+  absl::StatusOr<const Text*> read_text(const std::string& name, FileLoc loc);
 
   const SceneFiles& files_;
   Diagnostics& diagnostics_;
   /// Keyed by path; stays until the end, so that tokens stay valid and a file that is included often is
   /// read once.
   std::unordered_map<std::string, Text> texts_;
+  std::unordered_map<std::string, const Text*> texts_by_name_;  ///< spares asking the system again
   std::vector<Source> open_;
   Token peeked_;
   bool has_peeked_ = false;

@@ -13,7 +13,9 @@ using testing::IsEmpty;
 
 constexpr double kTolerance = 1e-12;
 
-void expect_near(const Vec3d& a, const Vec3d& b) { EXPECT_LT((a - b).length(), kTolerance) << a << " " << b; }
+void expect_near(const Vec3d& a, const Vec3d& b) {
+  EXPECT_LT((a - b).length(), kTolerance) << a << " " << b;
+}
 
 /// Where the shape's transform takes a point.
 Vec3d moved(std::string_view transforms, const Vec3d& p) {
@@ -35,7 +37,8 @@ TEST(Transforms, RotationIsRightHanded) {
 
 TEST(Transforms, SixteenNumbersAreColumnMajor) {
   expect_near(moved("Transform [1 0 0 0  0 1 0 0  0 0 1 0  7 8 9 1]", {1, 1, 1}), {8, 9, 10});
-  expect_near(moved("Translate 1 0 0 ConcatTransform 2 0 0 0  0 2 0 0  0 0 2 0  0 0 0 1", {1, 0, 0}), {3, 0, 0});
+  expect_near(moved("Translate 1 0 0 ConcatTransform 2 0 0 0  0 2 0 0  0 0 2 0  0 0 0 1", {1, 0, 0}),
+              {3, 0, 0});
   expect_near(moved("Transform [2 0 0 0  0 2 0 0  0 0 2 0  0 0 0 2]", {1, 1, 1}), {1, 1, 1});
   expect_near(moved("Translate 5 5 5 Identity", {1, 1, 1}), {1, 1, 1});
 }
@@ -91,7 +94,8 @@ TEST(Transforms, ALightAtInfinityHasOnlyALinearPart) {
 
 TEST(Transforms, ActiveTransformMovesTheEndAlone) {
   const SceneDescription scene = parsed(
-      "TransformTimes 0 2 WorldBegin ActiveTransform EndTime Translate 1 0 0 ActiveTransform All Translate 0 1 0 "
+      "TransformTimes 0 2 WorldBegin ActiveTransform EndTime Translate 1 0 0 ActiveTransform All Translate 0 "
+      "1 0 "
       "Shape \"sphere\" WorldEnd");
   const Placement& placement = scene.shapes.at(0).placement;
   EXPECT_TRUE(placement.moving());
@@ -106,7 +110,8 @@ TEST(Transforms, ActiveTransformMovesTheEndAlone) {
 TEST(Transforms, CameraIsACoordinateSystemAndWorldResets) {
   const SceneDescription scene = parsed(
       "Translate 0 0 5 Camera \"perspective\" WorldBegin Shape \"sphere\" CoordSysTransform \"camera\" "
-      "Shape \"sphere\" CoordSysTransform \"none\" CoordinateSystem \"here\" Identity CoordSysTransform \"here\" "
+      "Shape \"sphere\" CoordSysTransform \"none\" CoordinateSystem \"here\" Identity CoordSysTransform "
+      "\"here\" "
       "Shape \"sphere\" CoordSysTransform \"world\" Shape \"sphere\"");
   EXPECT_EQ(scene.camera_placement.start[3][2], 5);
   EXPECT_EQ(scene.shapes.at(0).placement.start, Matrix());
@@ -201,7 +206,8 @@ TEST(Names, FloatAndSpectrumTexturesAreApart) {
 
 TEST(Names, TexturesAreScopedAndMissingOnesAreSaid) {
   const SceneDescription scene = parsed(
-      "WorldBegin Texture \"Map #0\" \"spectrum\" \"constant\" AttributeBegin Texture \"Map #0\" \"spectrum\" "
+      "WorldBegin Texture \"Map #0\" \"spectrum\" \"constant\" AttributeBegin Texture \"Map #0\" "
+      "\"spectrum\" "
       "\"scale\" \"texture tex1\" \"Map #0\" Material \"matte\" \"texture Kd\" \"Map #0\" AttributeEnd "
       "Material \"matte\" \"texture Kd\" \"Map #0\" Material \"matte\" \"texture Kd\" \"none\"");
   EXPECT_EQ(scene.textures.at(1).params.find("tex1")->texture, 0);
@@ -232,8 +238,9 @@ TEST(Objects, DoNotEmit) {
 }
 
 TEST(Media, OneNameMeansBothSides) {
-  const SceneDescription scene =
-      parsed("MediumInterface \"\" \"vol\" Camera \"perspective\" WorldBegin MediumInterface \"fog\" Shape \"sphere\"");
+  const SceneDescription scene = parsed(
+      "MediumInterface \"\" \"vol\" Camera \"perspective\" WorldBegin MediumInterface \"fog\" Shape "
+      "\"sphere\"");
   EXPECT_EQ(scene.camera_medium, "vol");
   EXPECT_EQ(scene.shapes.at(0).inside_medium, "fog");
   EXPECT_EQ(scene.shapes.at(0).outside_medium, "fog");

@@ -35,7 +35,9 @@ TEST(Lexer, CommentsEndAtTheLineAndStayOutOfStrings) {
 }
 
 TEST(Lexer, AcceptsEveryLineEndAndTheByteOrderMark) {
-  EXPECT_THAT(texts("\xEF\xBB\xBF" "a\r\nb\tc\r\n"), ElementsAre("a", "b", "c"));
+  EXPECT_THAT(texts("\xEF\xBB\xBF"
+                    "a\r\nb\tc\r\n"),
+              ElementsAre("a", "b", "c"));
 }
 
 TEST(Lexer, CountsLinesAndColumnsFromOne) {
@@ -53,7 +55,8 @@ TEST(Lexer, RefusesUnterminatedStringsAndControlCharacters) {
   EXPECT_THAT(texts("\"abc"), ElementsAre("error", testing::HasSubstr("closing quote")));
   EXPECT_THAT(texts("\"abc\n\""), ElementsAre("error", testing::HasSubstr("closing quote")));
   EXPECT_THAT(texts("\"abc\\"), ElementsAre("error", testing::HasSubstr("closing quote")));
-  EXPECT_THAT(texts(std::string_view("a \0 b", 5)), ElementsAre("error", testing::HasSubstr("control character")));
+  EXPECT_THAT(texts(std::string_view("a \0 b", 5)),
+              ElementsAre("error", testing::HasSubstr("control character")));
   EXPECT_THAT(texts("\x01"), ElementsAre("error", testing::HasSubstr("control character")));
 }
 

@@ -48,7 +48,8 @@ Vec3f normal(const TriangleMesh& mesh, size_t triangle) {
 
 TEST(TriangleMeshShape, ReadsBothVersionsOfEveryArray) {
   const TriangleMesh v3 = mesh_of(
-      "\"trianglemesh\" \"integer indices\" [0 1 2] \"point P\" [0 0 0 1 0 0 0 1 0] \"normal N\" [0 0 1 0 0 1 0 0 1] "
+      "\"trianglemesh\" \"integer indices\" [0 1 2] \"point P\" [0 0 0 1 0 0 0 1 0] \"normal N\" [0 0 1 0 0 "
+      "1 0 0 1] "
       "\"vector S\" [1 0 0 1 0 0 1 0 0] \"float st\" [0 0 1 0 0 1]");
   EXPECT_EQ(v3.positions.at(1), Vec3f(1, 0, 0));
   EXPECT_EQ(v3.normals.at(2), Vec3f(0, 0, 1));
@@ -82,7 +83,8 @@ TEST(TriangleMeshShape, ArraysOfAnotherLengthAreLeftOutWithAWarning) {
 
 TEST(TriangleMeshShape, TrianglesWithoutAreaAreDroppedAndCounted) {
   const Made made = make(
-      "\"trianglemesh\" \"integer indices\" [0 1 2  0 0 1  0 3 1  2 1 0] \"point P\" [0 0 0 1 1 1 0 1 0 .3 .3 .3]");
+      "\"trianglemesh\" \"integer indices\" [0 1 2  0 0 1  0 3 1  2 1 0] \"point P\" [0 0 0 1 1 1 0 1 0 .3 "
+      ".3 .3]");
   ASSERT_TRUE(made.mesh.ok());
   EXPECT_THAT(made.mesh->indices, ElementsAre(0, 1, 2, 2, 1, 0));
   EXPECT_THAT(made.warnings, ElementsAre(HasSubstr("2 of 4 triangles have no area")));
@@ -92,8 +94,7 @@ TEST(TriangleMeshShape, TrianglesWithoutAreaAreDroppedAndCounted) {
 }
 
 TEST(Quad, FacesAlongUCrossV) {
-  const TriangleMesh quad =
-      mesh_of("\"quad\" \"point o\" [1 1 1] \"vector u\" [2 0 0] \"vector v\" [0 0 3]");
+  const TriangleMesh quad = mesh_of("\"quad\" \"point o\" [1 1 1] \"vector u\" [2 0 0] \"vector v\" [0 0 3]");
   EXPECT_THAT(quad.indices, ElementsAre(0, 1, 2, 0, 2, 3));
   EXPECT_EQ(quad.positions.at(2), Vec3f(3, 1, 4));
   EXPECT_EQ(quad.uvs.at(3), Vec2f(0, 1));
@@ -127,8 +128,9 @@ TEST(Bilinear, SeveralPatchesAndTheirFaults) {
                     "\"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0 0 2 0 1 2 0]")
                 .triangles(),
             4u);
-  EXPECT_THAT(mesh_error("\"bilinearmesh\" \"integer indices\" [0 1 2 4] \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]"),
-              HasSubstr("index 4"));
+  EXPECT_THAT(
+      mesh_error("\"bilinearmesh\" \"integer indices\" [0 1 2 4] \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]"),
+      HasSubstr("index 4"));
   EXPECT_THAT(mesh_error("\"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0]"), HasSubstr("indices"));
 }
 
@@ -141,9 +143,10 @@ TEST(PlyMeshShape, FaultsNameTheShapeAndTheFile) {
 
 TEST(PlyMeshShape, ValuesThatAreNotFiniteAreErrors) {
   const SceneFolder folder;
-  folder.write("m.ply",
-               "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\n"
-               "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 1e300 0 0 0 1 0 3 0 1 2");
+  folder.write(
+      "m.ply",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 1e300 0 0 0 1 0 3 0 1 2");
   const auto scene = folder.parse("WorldBegin Shape \"plymesh\" \"string filename\" \"m.ply\"");
   std::vector<std::string> warnings;
   const auto mesh = make_mesh(scene->shapes.at(0), *scene, folder.files(), warnings);
@@ -194,7 +197,8 @@ TEST(LoopSubdivision, TheLimitDoesNotDependOnTheLevel) {
 
 TEST(LoopSubdivision, AFlatGridStaysFlatAndItsBoundaryIsASpline) {
   const TriangleMesh mesh = mesh_of(
-      "\"loopsubdiv\" \"integer levels\" 2 \"integer indices\" [0 1 4 0 4 3 1 2 5 1 5 4 3 4 7 3 7 6 4 5 8 4 8 7] "
+      "\"loopsubdiv\" \"integer levels\" 2 \"integer indices\" [0 1 4 0 4 3 1 2 5 1 5 4 3 4 7 3 7 6 4 5 8 4 "
+      "8 7] "
       "\"point P\" [0 0 7 1 0 7 2 0 7 0 1 7 1 1 7 2 1 7 0 2 7 1 2 7 2 2 7]");
   EXPECT_EQ(mesh.triangles(), 8u * 16);
   for (size_t i = 0; i < mesh.positions.size(); ++i) {
@@ -211,8 +215,9 @@ TEST(LoopSubdivision, FaultsOfTheControlMeshAreErrors) {
   EXPECT_THAT(mesh_error("\"loopsubdiv\" \"integer indices\" [0 1 2 0 1 3 0 1 4] "
                          "\"point P\" [0 0 0 1 0 0 0 1 0 0 0 1 1 1 1]"),
               HasSubstr("3 faces meet"));
-  EXPECT_THAT(mesh_error("\"loopsubdiv\" \"integer indices\" [0 1 2 0 1 3] \"point P\" [0 0 0 1 0 0 0 1 0 0 0 1]"),
-              HasSubstr("wind against"));
+  EXPECT_THAT(
+      mesh_error("\"loopsubdiv\" \"integer indices\" [0 1 2 0 1 3] \"point P\" [0 0 0 1 0 0 0 1 0 0 0 1]"),
+      HasSubstr("wind against"));
   EXPECT_THAT(mesh_error(fmt::format("{} \"integer levels\" 14", kOctahedron)), HasSubstr("14 levels"));
   EXPECT_THAT(mesh_error(fmt::format("{} \"integer levels\" -1", kOctahedron)), HasSubstr("-1 levels"));
   EXPECT_THAT(mesh_error("\"loopsubdiv\" \"integer indices\" [0 1 7] \"point P\" [0 0 0 1 0 0 0 1 0]"),

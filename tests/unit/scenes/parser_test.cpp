@@ -21,7 +21,8 @@ Params params_of(std::string_view text) {
 }
 
 TEST(Parameters, SingleValuesNeedNoBrackets) {
-  const Params params = params_of("\"float radius\" 2 \"bool a\" \"true\" \"bool b\" false \"string s\" \"x\"");
+  const Params params =
+      params_of("\"float radius\" 2 \"bool a\" \"true\" \"bool b\" false \"string s\" \"x\"");
   EXPECT_EQ(params.number("radius", 0), 2);
   EXPECT_TRUE(params.boolean("a", false));
   EXPECT_FALSE(params.boolean("b", true));
@@ -34,8 +35,8 @@ TEST(Parameters, TypesAreNormalised) {
       "\"blackbody f\" [6500 100] \"spectrum g\" \"x.spd\" \"spectrum h\" [400 1 700 1] \"point2 i\" [1 2]");
   std::vector<std::string> types;
   for (const Param& param : params.all) types.push_back(param.type);
-  EXPECT_THAT(types, ElementsAre("rgb", "point3", "vector3", "normal", "xyz", "blackbody", "spectrum", "spectrum",
-                                 "point2"));
+  EXPECT_THAT(types, ElementsAre("rgb", "point3", "vector3", "normal", "xyz", "blackbody", "spectrum",
+                                 "spectrum", "point2"));
   EXPECT_THAT(params.find("f")->numbers, ElementsAre(6500, 100));
   EXPECT_THAT(params.find("g")->strings, ElementsAre("x.spd"));
 }
@@ -75,7 +76,8 @@ TEST(Parameters, LeftOverNumbersAreDroppedWithAWarning) {
 
 TEST(Parameters, ErrorsNameTheirPlace) {
   const std::string before = "WorldBegin\nShape \"sphere\" ";
-  EXPECT_THAT(error_of(before + "\"float radius\" [ nan ]"), AllOf(StartsWith("a.pbrt:2:33: "), HasSubstr("nan")));
+  EXPECT_THAT(error_of(before + "\"float radius\" [ nan ]"),
+              AllOf(StartsWith("a.pbrt:2:33: "), HasSubstr("nan")));
   EXPECT_THAT(error_of(before + "\"float radius\" inf"), StartsWith("a.pbrt:2:31: "));
   EXPECT_THAT(error_of(before + "\"float radius\" 1e39"), HasSubstr("not finite in single precision"));
   EXPECT_THAT(error_of(before + "\"integer n\" 3000000000"), HasSubstr("32 bits"));
@@ -114,7 +116,8 @@ TEST(Directives, NamesOfNoPbrtAreErrorsForShapesAndLights) {
 
 TEST(Directives, NamesOfNoPbrtAreWarningsElsewhere) {
   const SceneDescription scene = parsed(
-      "Sampler \"bushpp\" Integrator \"pssps\" WorldBegin Material \"pyramid\" Texture \"t\" \"float\" \"x\"");
+      "Sampler \"bushpp\" Integrator \"pssps\" WorldBegin Material \"pyramid\" Texture \"t\" \"float\" "
+      "\"x\"");
   EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("bushpp"), HasSubstr("pssps"), HasSubstr("pyramid"),
                                           HasSubstr("texture 'x'")));
 }
@@ -134,18 +137,21 @@ TEST(Directives, OutOfPlaceMeansLeftOutAndSaid) {
   const SceneDescription scene = parsed("Shape \"sphere\" Shape \"disk\" WorldBegin Film \"image\"");
   EXPECT_THAT(scene.shapes, IsEmpty());
   EXPECT_TRUE(scene.film.type.empty());
-  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("Shape before WorldBegin"), HasSubstr("Film after WorldBegin")));
+  EXPECT_THAT(scene.warnings,
+              ElementsAre(HasSubstr("Shape before WorldBegin"), HasSubstr("Film after WorldBegin")));
 }
 
 TEST(Directives, TextAfterWorldEndIsReadButNotRendered) {
-  const SceneDescription scene = parsed("WorldBegin Shape \"sphere\" WorldEnd WorldBegin Shape \"disk\" WorldEnd");
+  const SceneDescription scene =
+      parsed("WorldBegin Shape \"sphere\" WorldEnd WorldBegin Shape \"disk\" WorldEnd");
   EXPECT_EQ(scene.shapes.size(), 1u);
   EXPECT_THAT(scene.warnings, testing::Not(IsEmpty()));
   EXPECT_THAT(error_of("WorldBegin WorldEnd Nonsense"), HasSubstr("Nonsense"));
 }
 
 TEST(Directives, Version4NeedsNoWorldEnd) {
-  EXPECT_THAT(parsed("Option \"bool x\" false ColorSpace \"srgb\" WorldBegin Shape \"sphere\"").warnings, IsEmpty());
+  EXPECT_THAT(parsed("Option \"bool x\" false ColorSpace \"srgb\" WorldBegin Shape \"sphere\"").warnings,
+              IsEmpty());
 }
 
 TEST(Directives, FilmSizesOutOfRangeAreErrors) {
@@ -154,7 +160,8 @@ TEST(Directives, FilmSizesOutOfRangeAreErrors) {
   EXPECT_THAT(error_of("Film \"rgb\" \"integer xresolution\" 65537"), HasSubstr("from 1 to 65536"));
   EXPECT_THAT(error_of("Film \"rgb\" \"integer xresolution\" 65536 \"integer yresolution\" 65536"),
               HasSubstr("pixels"));
-  EXPECT_TRUE(SceneFolder().parse("Film \"rgb\" \"integer xresolution\" 65536 \"integer yresolution\" 4096").ok());
+  EXPECT_TRUE(
+      SceneFolder().parse("Film \"rgb\" \"integer xresolution\" 65536 \"integer yresolution\" 4096").ok());
 }
 
 TEST(Directives, AreaIsTheOldNameOfDiffuse) {
@@ -199,9 +206,9 @@ TEST(Include, CyclesDepthAndMissingFilesAreErrors) {
   SceneFolder folder;
   EXPECT_THAT(message_of(folder.parse("\nInclude \"a.pbrt\"").status()),
               AllOf(StartsWith("a.pbrt:2:1: "), HasSubstr("includes itself")));
-  EXPECT_THAT(message_of(folder.parse("Include \"none.pbrt\"").status()), HasSubstr("cannot include 'none.pbrt'"));
-  for (int i = 0; i < 70; ++i)
-    folder.write(fmt::format("f{}", i), fmt::format("Include \"f{}\"", i + 1));
+  EXPECT_THAT(message_of(folder.parse("Include \"none.pbrt\"").status()),
+              HasSubstr("cannot include 'none.pbrt'"));
+  for (int i = 0; i < 70; ++i) folder.write(fmt::format("f{}", i), fmt::format("Include \"f{}\"", i + 1));
   folder.write("f70", "");
   EXPECT_THAT(message_of(folder.parse("Include \"f0\"").status()), HasSubstr("more than 64 deep"));
   EXPECT_THAT(message_of(parse_scene("none.pbrt", folder.files()).status()), StartsWith("none.pbrt: "));
@@ -235,9 +242,9 @@ TEST(Import, KeepsItsStateToItselfAndItsNamesForAll) {
 TEST(Import, CannotCloseScopesThatItDidNotOpen) {
   SceneFolder folder;
   folder.write("b.pbrt", "TransformEnd AttributeEnd AttributeBegin TransformEnd AttributeEnd Scale 2 2 2");
-  const auto scene =
-      folder.parse("WorldBegin Translate 1 0 0 AttributeBegin Translate 1 0 0 Import \"b.pbrt\" Shape \"sphere\" "
-                   "AttributeEnd Shape \"sphere\"");
+  const auto scene = folder.parse(
+      "WorldBegin Translate 1 0 0 AttributeBegin Translate 1 0 0 Import \"b.pbrt\" Shape \"sphere\" "
+      "AttributeEnd Shape \"sphere\"");
   ASSERT_TRUE(scene.ok()) << message_of(scene.status());
   EXPECT_EQ(scene->shapes.at(0).placement.start[3][0], 2);
   EXPECT_EQ(scene->shapes.at(0).placement.start[0][0], 1);

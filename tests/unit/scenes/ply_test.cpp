@@ -118,9 +118,11 @@ INSTANTIATE_TEST_SUITE_P(ByteOrders, BinaryPly, testing::Bool(),
                          [](const auto& big) { return big.param ? "Big" : "Little"; });
 
 TEST(Ply, NormalsAndEverySpellingOfTextureCoordinates) {
-  for (const auto& [u, v] : {std::pair("u", "v"), {"s", "t"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}}) {
+  for (const auto& [u, v] :
+       {std::pair("u", "v"), {"s", "t"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}}) {
     const std::string extra = fmt::format(
-        "property float nx\nproperty float ny\nproperty float nz\nproperty float {}\nproperty float {}\n", u, v);
+        "property float nx\nproperty float ny\nproperty float nz\nproperty float {}\nproperty float {}\n", u,
+        v);
     const TriangleMesh mesh = mesh_of(header("ascii", "3", "1", extra) +
                                       "0 0 0 0 0 1 .1 .2\n1 0 0 0 0 1 .3 .4\n0 1 0 0 0 1 .5 .6\n3 0 1 2");
     EXPECT_EQ(mesh.normals.at(1), Vec3f(0, 0, 1));
@@ -133,7 +135,8 @@ TEST(Ply, OtherElementsAreSkippedAndWindowsLineEndsRead) {
       "ply\r\nformat ascii 1.0\r\nelement camera 1\r\nproperty list uchar float k\r\nproperty int id\r\n"
       "element vertex 3\r\nproperty float x\r\nproperty float y\r\nproperty float z\r\nelement face 1\r\n"
       "property list uchar uint vertex_indices\r\nelement edge 1\r\nproperty int vertex1\r\nproperty int "
-      "vertex2\r\nelement nothing 4000000000\r\nend_header\r\n2 0.5 0.5 9\r\n0 0 0\r\n1 0 0\r\n0 1 0\r\n3 0 1 "
+      "vertex2\r\nelement nothing 4000000000\r\nend_header\r\n2 0.5 0.5 9\r\n0 0 0\r\n1 0 0\r\n0 1 0\r\n3 0 "
+      "1 "
       "2\r\n0 1\r\n";
   EXPECT_THAT(mesh_of(text).indices, ElementsAre(0, 1, 2));
 }
@@ -178,10 +181,12 @@ TEST(Ply, HeaderFaultsNameTheirLine) {
   EXPECT_THAT(ply_error("ply\nformat ascii 2.0\n"), HasSubstr("line 2"));
   EXPECT_THAT(ply_error("ply\nformat ascii 1.0\nelement vertex -1\n"), HasSubstr("line 3"));
   EXPECT_THAT(ply_error("ply\nformat ascii 1.0\nproperty float x\n"), HasSubstr("before the first element"));
-  EXPECT_THAT(ply_error("ply\nformat ascii 1.0\nelement a 1\nproperty half x\n"), HasSubstr("line 4: unknown type"));
+  EXPECT_THAT(ply_error("ply\nformat ascii 1.0\nelement a 1\nproperty half x\n"),
+              HasSubstr("line 4: unknown type"));
   EXPECT_THAT(ply_error("ply\nformat ascii 1.0\nelement a 1\nelement a 1\n"), HasSubstr("second element"));
   EXPECT_THAT(ply_error("ply\nelement vertex 0\nelement face 0\nend_header\n"), HasSubstr("no format"));
-  EXPECT_THAT(ply_error("ply\nformat ascii 1.0\nelement vertex 0\nend_header\n"), HasSubstr("lacks an element"));
+  EXPECT_THAT(ply_error("ply\nformat ascii 1.0\nelement vertex 0\nend_header\n"),
+              HasSubstr("lacks an element"));
   EXPECT_THAT(ply_error("ply\nformat ascii 1.0\nfrobnicate\n"), HasSubstr("unknown word"));
 }
 

@@ -28,7 +28,8 @@ class SceneFolder {
   std::string path(std::string_view name) const { return (path_ / name).string(); }
   void write(std::string_view name, std::string_view bytes) const {
     std::filesystem::create_directories((path_ / name).parent_path());
-    std::ofstream(path_ / name, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    std::ofstream(path_ / name, std::ios::binary)
+        .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   }
   FolderFiles files() const { return FolderFiles(path_.string()); }
 
