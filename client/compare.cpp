@@ -61,8 +61,7 @@ void add_compare(CLI::App& app, Chosen& chosen) {
   command->add_option("reference", options->reference)->required()->type_name("REFERENCE.exr");
   command->add_option("--region", options->regions, "NAME=X0,Y0,X1,Y1 in pixels, half-open; repeatable")
       ->type_name("REGION")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      ->allow_extra_args(false);
   command->add_flag("--json", options->json, "As JSON");
   command->callback([options, &chosen] {
     chosen.run = [options](std::stop_token) {

@@ -119,8 +119,7 @@ void add_job_options(CLI::App& app, JobOptions& o) {
          "Strategies: bsdf area sa line-area@DEG line-sa@u line-sa@v. Combinations: /balance (default) "
          "/average. Default: the scene's Integrator \"pointline\", else bsdf:1+sa:1/balance")
       ->type_name("MIX")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      ->allow_extra_args(false);
   app.add_option("--budget", o.budget, "CPU seconds per mix: 500ms, 30s, 2m")->type_name("DURATION");
   app.add_option("--spp", o.passes, "Camera samples per pixel")->type_name("N");
   app.add_option("--target-error", o.target_error, "Until relMSE is estimated below E")->type_name("E");
@@ -128,8 +127,7 @@ void add_job_options(CLI::App& app, JobOptions& o) {
   app.add_option("--reference", o.reference, "Reference image: error columns")->type_name("REF.exr");
   app.add_option("--region", o.regions, "NAME=X0,Y0,X1,Y1 in pixels, half-open; repeatable")
       ->type_name("REGION")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      ->allow_extra_args(false);
   app.add_option("--resolution", o.resolution, "Instead of the scene's")->type_name("WxH");
   app.add_option("--crop", o.crop, "Render only these pixels, half-open")->type_name("X0,Y0,X1,Y1");
   app.add_option("--max-depth", o.max_depth, "Vertices with direct light; above 1 along specular chains")

@@ -14,11 +14,11 @@ inline constexpr double kRelMseEpsilon = 1e-2;
 
 /// All means are over pixels and channels of the compared region; I the image, R the reference.
 struct ErrorFigures {
-  PixelRect region;                   ///< what was compared
-  double relmse = 0;                  ///< mean of (I-R)²/(R²+ε); raw, the floor is not subtracted
+  PixelRect region;   ///< what was compared
+  double relmse = 0;  ///< mean of (I-R)²/(R²+ε); raw, the floor is not subtracted
   std::optional<ConfidenceInterval> relmse_ci;  ///< 95 %; nothing with fewer than two blocks
-  double trimmed_relmse = 0;          ///< the same without the worst 0.1 % of pixels
-  double mse = 0;                     ///< mean of (I-R)²
+  double trimmed_relmse = 0;                    ///< the same without the worst 0.1 % of pixels
+  double mse = 0;                               ///< mean of (I-R)²
   /// mean of s²/(R²+ε), s the reference's standard error: what relMSE a perfect image would show.
   /// Nothing for a reference without stderr or variance layers.
   std::optional<double> reference_floor;

@@ -35,7 +35,8 @@ std::string fault_of_header(const TilePixels& p) {
 
 std::string fault_of(const TilePixels& p) {
   if (std::string fault = fault_of_header(p); !fault.empty()) return fault;
-  const size_t pixels = p.passes > 0 ? static_cast<size_t>(p.rect.area()) : 0;
+  const bool absent = p.passes == 0 && p.mean.empty() && p.m2.empty() && p.cost.empty();
+  const size_t pixels = absent ? 0 : static_cast<size_t>(p.rect.area());
   if (p.mean.size() != 3 * pixels || p.m2.size() != 3 * pixels || p.cost.size() != pixels)
     return fmt::format("arrays of {}, {}, {} values for {} pixels", p.mean.size(), p.m2.size(), p.cost.size(),
                        pixels);
@@ -55,6 +56,7 @@ std::string serialize(const TileResult& result) {
     for (const int32_t edge : {p.rect.x0, p.rect.y0, p.rect.x1, p.rect.y1}) out.put(edge);
     out.put(p.passes);
     out.put(p.groups);
+    if (p.passes == 0) continue;
     out.put(p.mean);
     out.put(p.m2);
     out.put(p.cost);

@@ -11,7 +11,8 @@
 namespace penumbra {
 
 /// Means and M2 of one mix over one tile and one range of passes. Arrays are row-major over the rect,
-/// mean and m2 with three channels per pixel (R G B). With no passes the arrays are empty.
+/// mean and m2 with three channels per pixel (R G B). With no passes they say nothing: all three are empty
+/// or of full size, and are not sent.
 struct TilePixels {
   PixelRect rect;
   int64_t passes = 0;       ///< weight: the same for every pixel

@@ -44,6 +44,16 @@ TEST(TileResult, RoundTrips) {
   EXPECT_TRUE(back->mixes[1].mean.empty());
 }
 
+TEST(TileResult, AMixWithoutPassesIsNotSent) {
+  TilePixels zeros = sample_tile();
+  zeros.passes = zeros.groups = 0;
+  const std::string bytes = serialize({{zeros}});
+  const auto back = parse_tile_result(bytes);
+  ASSERT_TRUE(back.ok()) << message_of(back.status());
+  EXPECT_TRUE(back->mixes[0].mean.empty());
+  EXPECT_LT(bytes.size(), 64u);
+}
+
 TEST(TileResult, NothingRoundTrips) {
   const auto back = parse_tile_result(serialize(TileResult{}));
   ASSERT_TRUE(back.ok());
