@@ -26,7 +26,7 @@ double fresnel_conductor(double cos_i, double eta, double k) {
   const double c = std::min(std::abs(cos_i), 1.0);
   const double c2 = c * c, s2 = 1 - c2;
   const double t0 = eta * eta - k * k - s2;
-  const double a2_plus_b2 = std::hypot(t0, 2 * eta * k);
+  const double a2_plus_b2 = std::sqrt(t0 * t0 + 4 * eta * eta * k * k);
   const double a = std::sqrt(std::max(0.0, (a2_plus_b2 + t0) / 2));
   const double t1 = a2_plus_b2 + c2, t2 = 2 * c * a;
   if (t1 + t2 == 0) return 1;  // grazing at an index of sin θ: the limit
