@@ -1,0 +1,72 @@
+// Line queries over any triangles, from any finite point: every path answers with the scalar reference's
+// bits, in order, within [0,1].
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include "proto/status.h"
+#include "worker/geometry/line_query.h"
+
+namespace penumbra {
+namespace {
+
+/// Floats of the input, one after another: small multiples of 1/16 so that degenerate positions are common,
+/// or any finite bits below 2^30.
+class Input {
+ public:
+  Input(const uint8_t* data, size_t size) : data_(data), size_(size) {}
+  bool has(size_t bytes) const { return size_ >= bytes; }
+  float number() {
+    if (size_ < 5) return 0;
+    const bool small = data_[0] & 1;
+    float value;
+    std::memcpy(&value, data_ + 1, sizeof value);
+    if (small) value = static_cast<float>(static_cast<int8_t>(data_[1])) / 16;
+    data_ += 5;
+    size_ -= 5;
+    return std::abs(value) < 0x1p30f && (value == 0 || std::abs(value) > 0x1p-30f) ? value : 1.f;
+  }
+  Vec3f vector() {
+    const float x = number(), y = number();
+    return {x, y, number()};
+  }
+
+ private:
+  const uint8_t* data_;
+  size_t size_;
+};
+
+}  // namespace
+}  // namespace penumbra
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  using namespace penumbra;
+  Input input(data, size);
+  const Vec3f x = input.vector(), a = input.vector(), b = input.vector();
+  TriangleMesh mesh;
+  while (input.has(45)) {
+    for (int c = 0; c < 3; ++c) {
+      mesh.indices.push_back(static_cast<uint32_t>(mesh.positions.size()));
+      mesh.positions.push_back(input.vector());
+    }
+  }
+  const MeshInput mesh_input{&mesh};
+  const auto bvh = build_line_bvh({&mesh_input, 1}, {}, {}, 1);
+  PENUMBRA_CHECK(bvh.ok());
+  const LineQuery query{x, a, b};
+  std::vector<IntervalSet> expected, got;
+  QueryCounters counters;
+  visible_lines(*bvh, LinePath::kScalar, {&query, 1}, expected, counters);
+  float end = 0;
+  for (const Interval& i : expected[0]) {
+    PENUMBRA_CHECK(end <= i.lo && i.lo < i.hi && i.hi <= 1);
+    end = i.hi;
+  }
+  visible_lines(*bvh, LinePath::kAvx2, {&query, 1}, got, counters);
+  PENUMBRA_CHECK(got[0] == expected[0]);
+  if (widest_line_path() == LinePath::kAvx512) {
+    visible_lines(*bvh, LinePath::kAvx512, {&query, 1}, got, counters);
+    PENUMBRA_CHECK(got[0] == expected[0]);
+  }
+  return 0;
+}
