@@ -89,9 +89,9 @@ function mixTable() {
     ["relMSE", "mean over pixels and channels of (I−R)²/(R²+0.01), with its 95 % interval from resampled 16×16 blocks"],
     ["trimmed", "relMSE without the worst 0.1 % of pixels"],
     ["floor", "the relMSE that a perfect image would show, because the reference is noisy itself"],
-    ["relMSE × CPU s", "less is better; constant in time for an unbiased estimator"],
+    ["relMSE × s", "error times CPU seconds: less is better; constant in time for an unbiased estimator"],
     ["rays / s", "camera, specular and shadow rays per CPU second"],
-    ["line queries / s", "visible-interval queries per CPU second"],
+    ["lines / s", "visible-interval queries per CPU second"],
   ];
   const rate = (count, m) => (count && m.cpu_seconds > 0 ? significant(count / m.cpu_seconds) : "–");
   const rows = run.mixes.map((m, i) => el("tr", m === best && measured.length > 1 ? { class: "best" } : {},
@@ -134,7 +134,8 @@ function chart() {
       "Error needs a reference image: give one with --reference."));
     return;
   }
-  const width = 1200, height = 500, margin = { top: 14, right: 250, bottom: 46, left: 74 };
+  const longest = d3.max(series, (s) => s.mix.mix.length);
+  const width = 1200, height = 500, margin = { top: 14, right: Math.min(480, 34 + 7.8 * longest), bottom: 46, left: 74 };
   const all = series.flatMap((s) => s.points);
   const floors = run.mixes.map((m) => m.reference_floor).filter((v) => number(v) && v > 0);
   const padded = ([lo, hi], by) => [lo / by, hi * by];
@@ -148,7 +149,7 @@ function chart() {
     .attr("aria-label", "relMSE against CPU seconds, both logarithmic, one line per mix");
 
   const decade = (v) => { const l = Math.log10(v); return Math.abs(l - Math.round(l)) < 1e-9; };
-  const narrow = (scale) => Math.log10(scale.domain()[1] / scale.domain()[0]) < 1.5;
+  const narrow = (scale) => Math.log10(scale.domain()[1] / scale.domain()[0]) < 2.3;
   const labelled = (scale) => (v) => {
     const lead = Math.round(v / 10 ** Math.floor(Math.log10(v) + 1e-9));
     return decade(v) || (narrow(scale) && [2, 5].includes(lead)) ? significant(v) : "";
@@ -312,7 +313,7 @@ async function images() {
     s.view = el("div", { class: "view", style: `aspect-ratio:${aspect}` }, s.layer);
     const figure = s.mix && number(s.mix.relmse) ? `relMSE ${significant(s.mix.relmse)}` : s.mix ? `${grouped(s.mix.passes)} passes` : "";
     box.append(el("figure", {}, el("figcaption", {},
-      el("span", {}, s.mix ? el("span", { class: "swatch", style: `background:${colour(s.index)}` }) : null, s.name),
+      el("span", { class: "name", title: s.name }, s.mix ? el("span", { class: "swatch", style: `background:${colour(s.index)}` }) : null, s.name),
       el("span", { class: "fig" }, figure)), s.view));
   }
   const paint = () => shown.forEach((s) => (state.mode === "error" ? drawError(s.image, reference, s.canvas) : drawColour(s.image, s.canvas, state.exposure)));
