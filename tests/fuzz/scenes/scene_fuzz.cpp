@@ -1,0 +1,45 @@
+// Any bytes as a scene: parsed, checked, meshed. Every file that the scene names is the scene itself.
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cstddef>
+
+#include "proto/status.h"
+#include "scenes/check.h"
+#include "scenes/mesh.h"
+#include "scenes/needs.h"
+#include "scenes/parser.h"
+
+namespace {
+
+/// One file in memory under every name.
+class MemoryFile final : public penumbra::SceneFiles {
+ public:
+  MemoryFile() : fd_(::memfd_create("scene", 0)) { PENUMBRA_CHECK(fd_ >= 0); }
+  void write(const uint8_t* bytes, size_t count) const {
+    PENUMBRA_CHECK(::ftruncate(fd_, 0) == 0);
+    PENUMBRA_CHECK(::pwrite(fd_, bytes, count, 0) == static_cast<ssize_t>(count));
+  }
+  absl::StatusOr<std::string> path_of(std::string_view) const override {
+    return fmt::format("/proc/self/fd/{}", fd_);
+  }
+
+ private:
+  int fd_;
+};
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t count) {
+  static const MemoryFile file;
+  file.write(bytes, count);
+  const auto scene = penumbra::parse_scene("scene", file);
+  if (!scene.ok()) return 0;
+  penumbra::needs_of(*scene);
+  penumbra::unsupported(*scene);
+  if (!penumbra::check_files(*scene, file).ok()) return 0;
+  std::vector<std::string> warnings;
+  for (const penumbra::ShapeEntity& shape : scene->shapes)
+    if (penumbra::has_mesh(shape)) static_cast<void>(penumbra::make_mesh(shape, *scene, file, warnings));
+  return 0;
+}
