@@ -132,8 +132,8 @@ bool Agent::sync_once() {
 bool Agent::take_answer(const absl::Status& status, const v1::SyncResponse& response,
                         const WorkerState& told) {
   if (absl::IsCancelled(status)) return true;  // broken off by us
-  absl::StatusOr<DesiredState> desired = status;
-  if (status.ok()) desired = from_proto(response);
+  const absl::StatusOr<DesiredState> desired =
+      status.ok() ? from_proto(response) : absl::StatusOr<DesiredState>(status);
   if (desired.ok()) {
     if (!std::exchange(reachable_, true)) spdlog::info("the server is back");
     for (auto& finished : board_.apply(*desired, told)) {

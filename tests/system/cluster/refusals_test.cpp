@@ -130,9 +130,12 @@ TEST(Refusals, ProgramsStopCleanlyAndKnowTheirFlags) {
   Cluster cluster(test_name());
   cluster.start_server();
   Process& worker = cluster.start_worker();
+  const JobId job = cluster.submit(cluster.spec(cluster.upload_scene("0")));
+  cluster.wait_end(job);  // by now the worker is up
   v1::ListJobsResponse response;
   grpc::ClientContext context;
   EXPECT_TRUE(cluster.render().ListJobs(&context, {}, &response).ok());
+  EXPECT_EQ(response.jobs_size(), 1);
   worker.signal(SIGTERM);
   EXPECT_EQ(worker.wait(10), 0);
   cluster.server().signal(SIGTERM);
