@@ -28,7 +28,13 @@ absl::Status MaterialBuilder::complain(const FileLoc& loc, const std::string& me
 
 absl::StatusOr<RgbValue> MaterialBuilder::color(const MaterialEntity& entity, std::string_view name,
                                                 Rgb fallback) {
-  ASSIGN_OR_RETURN(const RgbValue value, rgb_value(entity.params, name, fallback, description_, files_));
+  const auto read = rgb_value(entity.params, name, fallback, description_, files_);
+  if (absl::IsNotFound(read.status())) {
+    if (strict_) return absl::InvalidArgumentError(read.status().message());
+    warnings_.push_back(message_of(read.status()) + ": the material's default instead");
+    return RgbValue{fallback};
+  }
+  ASSIGN_OR_RETURN(const RgbValue value, read);
   const Rgb& c = value.constant;
   // Spectra outside the gamut are a little negative in RGB; what the user wrote as RGB must not be.
   const Param* param = entity.params.find(name);

@@ -61,7 +61,9 @@ absl::StatusOr<Rgb> rgb_of_named(const Param& param, const std::string& place, c
   const std::string& name = param.strings[0];
   if (const auto named = named_spectrum(name)) return *named;
   const auto path = files.path_of(name);
-  if (!path.ok()) return invalid_input("{}: unknown spectrum or missing file '{}'", place, name);
+  if (!path.ok()) {
+    return make_status(absl::StatusCode::kNotFound, "{}: unknown spectrum or missing file '{}'", place, name);
+  }
   const auto numbers = read_spd(*path, name);
   if (!numbers.ok()) return invalid_input("{}: {}", place, message_of(numbers.status()));
   return rgb_of_pairs(*numbers, fmt::format("{}: {}", place, name));

@@ -49,9 +49,10 @@ FloatValue float_value(const Params& params, std::string_view name, float fallba
 absl::StatusOr<RgbValue> rgb_value(const Params& params, std::string_view name, Rgb fallback,
                                    const SceneDescription& description, const SceneFiles& files);
 
-/// Linear RGB of a spectrum parameter that is no texture: rgb, xyz, blackbody (temperature [scale]),
-/// spectrum (wavelength/value pairs, .spd file, or pbrt's named metals). `illuminant`: blackbody is
-/// normalised as pbrt does for emitters.
+/// Linear RGB of a parameter that is no texture: rgb, xyz, float, spectrum (wavelength/value pairs, .spd
+/// file, or a name that pbrt knows), blackbody (v3: pairs of temperature and scale, the peak is the scale;
+/// v4: one temperature, luminance 1). NotFound for a spectrum file that is missing, which pbrt-v3 warns of;
+/// InvalidArgument for every other fault. Both are `file:line:column: …`.
 absl::StatusOr<Rgb> to_rgb(const Param& param, const SceneDescription& description, const SceneFiles& files);
 
 }  // namespace penumbra

@@ -287,6 +287,15 @@ TEST_F(MaterialTest, UnsupportedIsTheNearestWithAWarningOrAnError) {
   }
 }
 
+TEST_F(MaterialTest, AMissingSpectrumFileIsTheDefaultWithAWarning) {
+  const std::string text = R"(Material "metal" "spectrum eta" "gone.spd" "float roughness" 0.3
+    "bool remaproughness" false)";
+  const double fresnel = fresnel_conductor(cos_half(), copper().eta.y, copper().k.y);
+  EXPECT_NEAR(bsdf(text).f(kWo, kWi).y, book_torrance_sparrow(0.3, fresnel), 1e-5);
+  EXPECT_THAT(warnings_, ElementsAre(AllOf(HasSubstr("scene.pbrt:2:"), HasSubstr("gone.spd"))));
+  EXPECT_FALSE(build(text, true).ok());
+}
+
 TEST_F(MaterialTest, UnwornMaterialsSayNothing) {
   const auto materials = build(R"(MakeNamedMaterial "a" "string type" "disney"
     Material "matte")");
