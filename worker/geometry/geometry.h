@@ -69,9 +69,6 @@ struct QueryCounters {
   uint64_t nodes_visited = 0, triangles_tested = 0;
 };
 
-class LineBvh;
-class EmbreeScene;
-
 /// Immutable after build; every query is const and may run on any number of threads.
 class Geometry {
  public:
