@@ -18,9 +18,11 @@ int follow(Server& server, const JobId& job, Progress::Style style, std::stop_to
   });
   progress.clear();
   if (!last.ok()) return tell(last.status());
-  if (last->state != JobState::kDone)
-    fmt::print(stderr, "penumbra: job {} {}{}{}\n", job, name_of(last->state),
-               last->message.empty() ? "" : ": ", last->message);
+  if (last->state != JobState::kDone) {
+    const bool says_more = !last->message.empty() && last->message != name_of(last->state);
+    fmt::print(stderr, "penumbra: job {} {}{}{}\n", job, name_of(last->state), says_more ? ": " : "",
+               says_more ? last->message : "");
+  }
   return exit_code(*last);
 }
 
