@@ -23,8 +23,8 @@ Rgb PathTracer::radiance(const CameraRay& camera_ray, const PassSampler& sampler
     const auto hit = scene_.geometry->intersect(ray, counters_);
     if (!hit) return sum + throughput * background(ray.direction);
     sum += throughput * emitted(*hit, ray);
-    SurfacePoint surface = surface_at(scene_, *hit, ray.direction);
-    if (scene_.footprints && depth == 0) set_footprint(surface, camera_ray);
+    const bool filters = scene_.footprints && depth == 0;
+    const SurfacePoint surface = surface_at(scene_, *hit, ray.direction, filters ? &camera_ray : nullptr);
     const Bsdf bsdf = scene_.materials.shade(scene_.meshes[hit->id.mesh].material, surface, scene_.textures);
     const ShadingPoint point(surface, bsdf);
     if (bsdf.has_non_specular()) sum += throughput * direct_.estimate(point, sampler, depth);

@@ -73,9 +73,45 @@ void to_world(SurfacePoint& point, const SceneInstance& instance) {
   for (Vec3f* n : {&point.dndu, &point.dndv}) *n = Vec3f(Vec3d(*n) * instance.normals);
 }
 
+void set_footprint(SurfacePoint& point, const CameraRay& ray) {
+  constexpr float kShare = 0.25f;
+  const auto meet = [&](const Vec3f& direction, Vec3f& d) {
+    const float along = point.ng.dot(direction);
+    const float t = point.ng.dot(point.p - ray.origin) / along;
+    if (along == 0 || !std::isfinite(t)) return false;
+    d = (ray.origin + direction * t - point.p) * kShare;
+    return true;
+  };
+  if (!meet(ray.direction_dx, point.dpdx) || !meet(ray.direction_dy, point.dpdy)) {
+    point.dpdx = point.dpdy = Vec3f(0);
+    return;
+  }
+  // [dpdu dpdv] [du; dv] = dp, in the least-squares sense: dp lies in the tangent plane but for rounding.
+  const double uu = point.dpdu.length2(), vv = point.dpdv.length2(), uv = point.dpdu.dot(point.dpdv);
+  const double determinant = uu * vv - uv * uv;
+  if (!(determinant > 0)) return;
+  const auto solve = [&](const Vec3f& dp, float& du, float& dv) {
+    const double u = point.dpdu.dot(dp), v = point.dpdv.dot(dp);
+    const double a = (u * vv - v * uv) / determinant, b = (v * uu - u * uv) / determinant;
+    du = std::isfinite(a) ? float(a) : 0;
+    dv = std::isfinite(b) ? float(b) : 0;
+  };
+  solve(point.dpdx, point.dudx, point.dvdx);
+  solve(point.dpdy, point.dudy, point.dvdy);
+}
+
+/// pbrt-v3's shading geometry of meshes with vertex normals (triangle.cpp): unit tangents, turned by a half,
+/// in place of the derivatives. It scales bump maps there, so pictures of pbrt scenes depend on it.
+void set_shading_tangents(SurfacePoint& point) {
+  const Vec3f t = point.dpdu.normalized().cross(point.ns);
+  if (!(t.length2() > 0)) return;
+  point.dpdv = t.normalized();
+  point.dpdu = point.dpdv.cross(point.ns);
+}
+
 }  // namespace
 
-SurfacePoint surface_at(const Scene& scene, const Hit& hit, const Vec3f& direction) {
+SurfacePoint surface_at(const Scene& scene, const Hit& hit, const Vec3f& direction, const CameraRay* footprint) {
   const SceneMesh& scene_mesh = scene.meshes[hit.id.mesh];
   const TriangleMesh& mesh = scene_mesh.mesh;
   const uint32_t* index = &mesh.indices[size_t(hit.id.primitive) * 3];
@@ -122,34 +158,9 @@ SurfacePoint surface_at(const Scene& scene, const Hit& hit, const Vec3f& directi
     point.dpdu = Vec3f(s);
     point.dpdv = Vec3f(r);
   }
+  if (footprint) set_footprint(point, *footprint);
+  if (!mesh.normals.empty()) set_shading_tangents(point);
   return point;
-}
-
-void set_footprint(SurfacePoint& point, const CameraRay& ray) {
-  constexpr float kShare = 0.25f;
-  const auto meet = [&](const Vec3f& direction, Vec3f& d) {
-    const float along = point.ng.dot(direction);
-    const float t = point.ng.dot(point.p - ray.origin) / along;
-    if (along == 0 || !std::isfinite(t)) return false;
-    d = (ray.origin + direction * t - point.p) * kShare;
-    return true;
-  };
-  if (!meet(ray.direction_dx, point.dpdx) || !meet(ray.direction_dy, point.dpdy)) {
-    point.dpdx = point.dpdy = Vec3f(0);
-    return;
-  }
-  // [dpdu dpdv] [du; dv] = dp, in the least-squares sense: dp lies in the tangent plane but for rounding.
-  const double uu = point.dpdu.length2(), vv = point.dpdv.length2(), uv = point.dpdu.dot(point.dpdv);
-  const double determinant = uu * vv - uv * uv;
-  if (!(determinant > 0)) return;
-  const auto solve = [&](const Vec3f& dp, float& du, float& dv) {
-    const double u = point.dpdu.dot(dp), v = point.dpdv.dot(dp);
-    const double a = (u * vv - v * uv) / determinant, b = (v * uu - u * uv) / determinant;
-    du = std::isfinite(a) ? float(a) : 0;
-    dv = std::isfinite(b) ? float(b) : 0;
-  };
-  solve(point.dpdx, point.dudx, point.dvdx);
-  solve(point.dpdy, point.dudy, point.dvdy);
 }
 
 }  // namespace penumbra

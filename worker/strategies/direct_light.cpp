@@ -238,7 +238,7 @@ void DirectLight::densities(const Task& task, Candidate& c, double* row) {
   const size_t* foreign = &foreign_[size_t(row - densities_.data())];
   const Vec3d x = task.view.x();
   for (size_t s = 0; s < slots; ++s) {
-    const Strategy strategy = task.slot(mix_, s).strategy;
+    const Strategy& strategy = task.slot(mix_, s).strategy;
     if (s == c.slot) {
       row[s] = c.sample.at.pdf;
     } else if (!is_line(strategy)) {

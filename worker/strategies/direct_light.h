@@ -18,8 +18,8 @@ class PreparedMix {
   PreparedMix(const Mix& mix, const LightSet& lights);
 
   struct Slot {
-    Strategy strategy;
-    int count = 1;
+    const Strategy& strategy;
+    int count;
   };
   size_t slots() const { return counts_.size(); }
   Slot slot(size_t area_emitter, size_t s) const {

@@ -4,12 +4,12 @@
 
 namespace penumbra {
 
-LightLine choose(const LineAreaStrategy& strategy, const LightView& view, double u) {
-  return choose_line_area(view.area().shape, strategy.radians, u);
+LightLine choose(const LineAreaStrategy& strategy, const LightView&, double u) {
+  return strategy.chords.choose(u);
 }
 
-LightLine through(const LineAreaStrategy& strategy, const LightView& view, const Vec3d& p) {
-  return line_area_through(view.area().shape, strategy.radians, p);
+LightLine through(const LineAreaStrategy& strategy, const LightView&, const Vec3d& p) {
+  return strategy.chords.through(p);
 }
 
 }  // namespace penumbra

@@ -35,7 +35,7 @@ Strategy fit_point(const LightShape& shape) {
 }
 
 Strategy fit_line_area(double radians, const LightShape& shape) {
-  if (has_line_area(shape)) return LineAreaStrategy{radians};
+  if (has_line_area(shape)) return LineAreaStrategy{radians, ParallelChords(shape, radians)};
   return fit_point(shape);
 }
 

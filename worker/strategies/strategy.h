@@ -8,6 +8,7 @@
 
 #include "proto/mix.h"
 #include "worker/effects/environment.h"
+#include "worker/lights/chords.h"
 #include "worker/lights/emitter.h"
 #include "worker/lights/line.h"
 #include "worker/lights/shape.h"
@@ -23,8 +24,11 @@ struct AreaStrategy {};
 struct SolidAngleStrategy {};
 /// The environment's own sampling by luminance; stands for `area`, `sa` and lines there.
 struct EnvironmentStrategy {};
-/// `line-area@DEG`.
-struct LineAreaStrategy { double radians = 0; };
+/// `line-area@DEG`. The chords do not depend on the shading point: they are made once per light.
+struct LineAreaStrategy {
+  double radians = 0;
+  ParallelChords chords;
+};
 /// `line-sa@u`, `line-sa@v`.
 struct LineSolidAngleStrategy { bool along_u = true; };
 
