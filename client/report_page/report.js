@@ -319,6 +319,7 @@ async function images() {
   const paint = () => shown.forEach((s) => (state.mode === "error" ? drawError(s.image, reference, s.canvas) : drawColour(s.image, s.canvas, state.exposure)));
   const place = () => shown.forEach((s) => {
     s.layer.style.transform = `translate(${state.x * 100}%,${state.y * 100}%) scale(${state.zoom})`;
+    s.layer.style.setProperty("--stroke", `${1.4 / state.zoom}px`);
     s.canvas.classList.toggle("sharp", (state.zoom * s.view.clientWidth) / s.image.width > 2);
   });
   const clamp = () => {
