@@ -83,7 +83,10 @@ TEST_F(ChildProcessTest, DiesWithAParentThatIsKilled) {
   waitpid(parent, nullptr, 0);
   int status = 0;
   EXPECT_EQ(waitpid(grandchild, &status, 0), grandchild);
-  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
+  // By the kernel, or by itself where the parent died before the child had asked the kernel for that;
+  // never by the end of its sleep.
+  const bool killed = WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
+  EXPECT_TRUE(killed || (WIFEXITED(status) && WEXITSTATUS(status) == 127));
   close(pipe_ends[0]);
   close(pipe_ends[1]);
 }
