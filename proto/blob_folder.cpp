@@ -79,8 +79,6 @@ absl::Status sync_path(const std::string& path) {
 }
 
 absl::Status rename_to(const std::string& from, const std::string& to) {
-  std::error_code error;
-  fs::create_directories(fs::path(to).parent_path(), error);
   if (::rename(from.c_str(), to.c_str()) != 0) return system_error("renaming to", to);
   return absl::OkStatus();
 }
@@ -113,16 +111,16 @@ absl::Status BlobWriter::append(std::string_view bytes) {
   return absl::OkStatus();
 }
 
-absl::Status BlobWriter::finish() {
+absl::Status BlobWriter::finish(bool flush) {
   if (written_ != size_)
     return invalid_input("blob {}: {} bytes came, {} were announced", digest_, written_, size_);
   if (const std::string found = hash_.hex(); found != digest_) {
     ::unlink(path_.c_str());
     return invalid_input("blob {}: its bytes have the digest {}", digest_, found);
   }
-  if (::fsync(file_) != 0) return system_error("flushing", path_);
+  if (flush && ::fsync(file_) != 0) return system_error("flushing", path_);
   RETURN_IF_ERROR(rename_to(path_, target_));
-  return sync_path(fs::path(target_).parent_path());
+  return flush ? sync_path(fs::path(target_).parent_path()) : absl::OkStatus();
 }
 
 absl::StatusOr<BlobFolder> BlobFolder::open(const std::string& root) {
@@ -131,6 +129,10 @@ absl::StatusOr<BlobFolder> BlobFolder::open(const std::string& root) {
   if (error) return invalid_input("{}: {}", root, error.message());
   if (::access((root + "/partial").c_str(), W_OK) != 0) return invalid_input("{}: not writable", root);
   remove_stale(root + "/partial");
+  // All folders at once, so that storing a blob makes no new one whose parent would have to be flushed.
+  for (int prefix = 0; prefix < 256; ++prefix)
+    fs::create_directory(fmt::format("{}/{:02x}", root, prefix), error);
+  RETURN_IF_ERROR(sync_path(root));
   return BlobFolder(root);
 }
 
@@ -155,7 +157,7 @@ uint64_t BlobFolder::partial(const Digest& digest) const {
   return ::stat(partial_path(digest).c_str(), &info) == 0 ? static_cast<uint64_t>(info.st_size) : 0;
 }
 
-absl::StatusOr<std::string> BlobFolder::read(const Digest& digest) const {
+absl::StatusOr<std::string> BlobFolder::read_unverified(const Digest& digest) const {
   const std::string path = path_of(digest);
   const File file(path, O_RDONLY);
   struct stat info {};
@@ -164,9 +166,15 @@ absl::StatusOr<std::string> BlobFolder::read(const Digest& digest) const {
   bytes.reserve(static_cast<size_t>(info.st_size));
   RETURN_IF_ERROR(read_pieces(file.get(), static_cast<uint64_t>(info.st_size), path,
                               [&](std::string_view piece) { bytes += piece; }));
+  return bytes;
+}
+
+absl::StatusOr<std::string> BlobFolder::read(const Digest& digest) const {
+  ASSIGN_OR_RETURN(std::string bytes, read_unverified(digest));
   Sha256 hash;
   hash.add(bytes);
   if (hash.hex() == digest) return bytes;
+  const std::string path = path_of(digest);
   ::unlink(path.c_str());
   return make_status(absl::StatusCode::kDataLoss, "{}: its bytes no longer have the digest; removed", path);
 }
@@ -197,7 +205,6 @@ absl::Status BlobFolder::sync(const std::vector<Digest>& digests) const {
     RETURN_IF_ERROR(sync_path(path));
     folders.insert(fs::path(path).parent_path());
   }
-  if (!folders.empty()) folders.insert(root_);
   for (const std::string& folder : folders) RETURN_IF_ERROR(sync_path(folder));
   return absl::OkStatus();
 }

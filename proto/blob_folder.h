@@ -29,9 +29,9 @@ class BlobWriter {
 
   /// InvalidArgument beyond the announced size; ResourceExhausted if the disk is full.
   absl::Status append(std::string_view bytes);
-  /// Verifies, makes durable, renames. InvalidArgument if size or digest do not fit: then the bytes are
-  /// thrown away.
-  absl::Status finish();
+  /// Verifies, makes durable (unless BlobFolder::sync() will), renames. InvalidArgument if size or digest
+  /// do not fit: bytes with another digest are thrown away.
+  absl::Status finish(bool flush = true);
 
  private:
   friend class BlobFolder;
@@ -63,6 +63,8 @@ class BlobFolder {
   /// Bytes of an unfinished writer that can be gone on with.
   uint64_t partial(const Digest& digest) const;
 
+  /// The whole blob as it lies there. NotFound.
+  absl::StatusOr<std::string> read_unverified(const Digest& digest) const;
   /// The whole blob, verified. NotFound; DataLoss if the bytes no longer have the digest: the file is then
   /// removed, so that it can be stored anew.
   absl::StatusOr<std::string> read(const Digest& digest) const;

@@ -25,12 +25,13 @@ absl::StatusOr<uint64_t> receive(const BlobFolder& blobs, uint64_t most_bytes,
     return make_status(absl::StatusCode::kResourceExhausted, "blob {}: {} bytes, the limit is {}",
                        chunk.digest(), chunk.size(), most_bytes);
   const uint64_t size = chunk.size();
+  const bool flush = !chunk.flush_later();
   ASSIGN_OR_RETURN(const auto writer, blobs.write(chunk.digest(), chunk.size(), chunk.offset()));
   do {
     if (chunk.data().size() > kChunkBytes) return invalid_input("a chunk of more than {} bytes", kChunkBytes);
     RETURN_IF_ERROR(writer->append(chunk.data()));
   } while (reader.Read(&chunk));
-  RETURN_IF_ERROR(writer->finish());
+  RETURN_IF_ERROR(writer->finish(flush));
   return size;
 }
 

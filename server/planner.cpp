@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "proto/status.h"
 
@@ -29,6 +30,10 @@ constexpr double kNominalSecondsPerRay = 1e-6;
 // Where a timeline looks, as shares of all passes. Nearly geometric.
 constexpr double kCheckpoints[] = {1 / 32., 2 / 32.,  3 / 32.,  4 / 32.,  6 / 32.,
                                    8 / 32., 12 / 32., 16 / 32., 24 / 32., 1};
+
+// A run whose tiles take less than this looks only where passes double: tasks would be too short to pay
+// for their administration.
+constexpr double kLeastSecondsForAllCheckpoints = 1;
 
 /// Mixes bits of a tile's and a range's number into a seed (the finaliser of SplitMix64, Steele et al.
 /// 2014); only the interleaving of slices depends on it.
@@ -74,7 +79,9 @@ std::vector<Share> boundary_shares(double first_share, double tile_seconds, doub
   std::vector<Share> shares;
   // A very long run shows its first group without waiting for 1/32 of everything.
   if (first_share < kCheckpoints[0] / 4) shares.push_back({first_share, true});
+  const bool few = tile_seconds < kLeastSecondsForAllCheckpoints;
   for (const double checkpoint : kCheckpoints) {
+    if (few && std::exp2(std::round(std::log2(checkpoint))) != checkpoint) continue;
     const double from = shares.empty() ? 0 : shares.back().share;
     const double cuts = std::ceil((checkpoint - from) * tile_seconds / task_seconds);
     for (double cut = 1; cut < cuts; ++cut)
@@ -198,6 +205,9 @@ Plan make_plan(const JobSpec& spec, const std::vector<int64_t>& passes) {
     before = boundary.passes;
     plan.boundaries.push_back(std::move(boundary));
   }
+  // With large groups the cuts are few: then each of them is worth a look.
+  if (tile_seconds >= kLeastSecondsForAllCheckpoints && plan.boundaries.size() <= std::size(kCheckpoints))
+    for (PassBoundary& boundary : plan.boundaries) boundary.checkpoint = true;
   return plan;
 }
 

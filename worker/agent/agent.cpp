@@ -14,8 +14,10 @@
 namespace penumbra {
 namespace {
 
-// The server may hold a Sync this long when there is nothing to say; news of our own break it off.
+// A worker that could take more asks the server to hold its Sync this long; news of our own break it off.
 constexpr uint32_t kWaitMilliseconds = 4000;
+// A worker that has all it wants calls this often to hear of cancelled jobs.
+constexpr double kBusySeconds = 0.5;
 // A call that takes longer than its wait and this is lost.
 constexpr int kCallSeconds = 10;
 // Between attempts to reach a server that is away.
@@ -90,6 +92,7 @@ void Agent::sync_loop() {
   while (!stopping_) {
     if (!sync_once()) break;
     if (drained()) break;
+    if (board_.full()) board_.wait_for_news(kBusySeconds);
   }
   ended_ = true;
 }
@@ -103,8 +106,9 @@ bool Agent::sync_once() {
   state.process_cpu_seconds = process_cpu_seconds();
   board_.describe(state);
   const bool reports = !state.completed.empty() || !state.failed.empty() || !state.loaded.empty();
+  const bool full = state.held.size() >= state.wanted;
   // A draining worker looks at its clock between calls.
-  state.wait_milliseconds = reports ? 0 : draining_ ? 200 : kWaitMilliseconds;
+  state.wait_milliseconds = reports ? 0 : draining_ ? 200 : full ? 0 : kWaitMilliseconds;
 
   const v1::SyncRequest request = to_proto(state);
   v1::SyncResponse response;
@@ -136,11 +140,13 @@ bool Agent::take_answer(const absl::Status& status, const v1::SyncResponse& resp
       status.ok() ? from_proto(response) : absl::StatusOr<DesiredState>(status);
   if (desired.ok()) {
     if (!std::exchange(reachable_, true)) spdlog::info("the server is back");
-    for (auto& finished : board_.apply(*desired, told)) {
+    const auto missing = board_.apply(*desired, told);
+    {
       const std::lock_guard lock(upload_mutex_);
-      uploads_.push_back({nullptr, std::move(finished)});
+      for (const auto& finished : missing) uploads_.push_back({nullptr, finished});
       upload_ready_.notify_one();
     }
+    if (!missing.empty()) pause(kRetrySeconds);  // reporting them again makes sense once they are there
     return true;
   }
   if (is_refusal(desired.status())) {

@@ -22,6 +22,7 @@ absl::Status BlobClient::upload(const Digest& digest, std::string_view bytes) co
   v1::UploadChunk chunk;
   chunk.set_digest(digest);
   chunk.set_size(bytes.size());
+  chunk.set_flush_later(true);
   do {
     const std::string_view piece = bytes.substr(0, kChunkBytes);
     bytes.remove_prefix(piece.size());

@@ -19,7 +19,7 @@ class BlobClient {
  public:
   explicit BlobClient(const std::shared_ptr<grpc::Channel>& channel) : stub_(v1::Blobs::NewStub(channel)) {}
 
-  /// Sends bytes that are in memory.
+  /// Sends a tile result. The Sync that reports it makes it durable.
   absl::Status upload(const Digest& digest, std::string_view bytes) const;
   /// Fetches a blob into the folder unless it is there, going on where an earlier attempt stopped. Another
   /// process that fetches the same blob into the same folder is waited for.

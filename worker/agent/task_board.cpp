@@ -64,6 +64,11 @@ std::vector<std::shared_ptr<Finished>> TaskBoard::apply(const DesiredState& desi
   return missing;
 }
 
+bool TaskBoard::full() const {
+  const std::lock_guard lock(mutex_);
+  return !draining_ && !closed_ && held_.size() >= wanted_;
+}
+
 bool TaskBoard::wait_for_news(double seconds) {
   static const std::atomic<bool> never{false};
   return wait_for_news_or(never, seconds);

@@ -40,6 +40,8 @@ class TaskBoard {
   void describe(WorkerState& state);
   /// Takes the answer to `told`. Returns the results that the server wants again: it has lost their blobs.
   std::vector<std::shared_ptr<Finished>> apply(const DesiredState& desired, const WorkerState& told);
+  /// It holds all the leases that it wants; never while it drains.
+  bool full() const;
   /// True if there is something to report that describe() has not seen yet. Blocks up to `seconds`.
   bool wait_for_news(double seconds);
   /// As wait_for_news(), returning early when `done` is set (under notify()).
