@@ -70,6 +70,10 @@ absl::StatusOr<Listener> listen(const std::string& address, const Credentials& c
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
   builder.SetMaxReceiveMessageSize(kMostMessageBytes);
   builder.SetMaxSendMessageSize(kMostMessageBytes);
+  // Few threads that poll: with more, every message wakes several for nothing.
+  builder.SetSyncServerOption(grpc::ServerBuilder::SyncServerOption::NUM_CQS, 1);
+  builder.SetSyncServerOption(grpc::ServerBuilder::SyncServerOption::MIN_POLLERS, 1);
+  builder.SetSyncServerOption(grpc::ServerBuilder::SyncServerOption::MAX_POLLERS, 2);
   int port = 0;
   builder.AddListeningPort(address, security, &port);
   for (grpc::Service* service : services) builder.RegisterService(service);

@@ -219,10 +219,13 @@ absl::Status Scheduler::report(const WorkerState& state,
   PENUMBRA_CHECK(shapes.size() == state.completed.size());
   ASSIGN_OR_RETURN(WorkerRecord * met, meet(state, now));
   WorkerRecord& worker = *met;
-  // The process's CPU time goes to the job that it works for; a worker rarely holds two jobs' leases.
+  // The process's CPU time goes to the job that it works for, once that renders: against cores × wall time
+  // of the render phase it says how busy the cores were. A worker rarely holds two jobs' leases.
   const double spent = std::max(0.0, state.process_cpu_seconds - worker.process_cpu_seconds);
-  if (!worker.leases.empty())
-    find_job(worker.leases.begin()->first.first)->header.worker_cpu_seconds += spent;
+  if (!worker.leases.empty()) {
+    JobHeader& header = find_job(worker.leases.begin()->first.first)->header;
+    if (header.first_lease_unix != 0) header.worker_cpu_seconds += spent;
+  }
   worker.process_cpu_seconds = state.process_cpu_seconds;
   for (const HeldLease& held : state.held) {
     JobRecord* job = find_job(held.lease.job);
