@@ -1,5 +1,6 @@
 #include "worker/render/surface.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -125,9 +126,10 @@ SurfacePoint surface_at(const Scene& scene, const Hit& hit, const Vec3f& directi
   point.wo = -direction;
   point.p = t.p0 * b0 + t.p1 * b1 + t.p2 * b2;
   // Rounding of the blend, and of what a ray that starts here computes for its distance to this very
-  // triangle: n · (p0 - origin), each difference rounded in proportion to the triangle's extent.
-  point.p_error = (abs(t.p0 * b0) + abs(t.p1 * b1) + abs(t.p2 * b2)) * gamma(7) +
-                  (abs(t.p1 - t.p0) + abs(t.p2 - t.p0)) * gamma(6);
+  // triangle: n · (p0 - origin), where n, a cross product of the edges, is off by a few units of rounding in
+  // every direction, so that the whole extent of the triangle enters and not its extent along n alone.
+  const float extent = std::max({(t.p1 - t.p0).length(), (t.p2 - t.p0).length(), (t.p2 - t.p1).length()});
+  point.p_error = (abs(t.p0 * b0) + abs(t.p1 * b1) + abs(t.p2 * b2)) * gamma(7) + Vec3f(extent * gamma(8));
   point.uv = t.uv0 * b0 + t.uv1 * b1 + t.uv2 * b2;
   const bool has_uv = partials(t, t.p0 - t.p2, t.p1 - t.p2, point.dpdu, point.dpdv);
 
