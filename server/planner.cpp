@@ -17,7 +17,7 @@ constexpr int64_t kMostPilotPasses = 256;
 // far better in the mean over pixels.
 constexpr int64_t kVariancePilotPasses = 8;
 // Groups of passes in a run. Fewer and larger groups stratify better; the variance needs several.
-constexpr int64_t kLeastGroups = 8;
+constexpr int64_t kLeastGroups = 4;
 // Tasks as long as these are cheap to administer and short enough to keep all cores busy to the end.
 constexpr double kLeastTaskSeconds = 0.2, kMostTaskSeconds = 0.8;
 constexpr double kTasksPerRun = 256;

@@ -158,6 +158,11 @@ class WithGreyWood final : public SceneFiles {
   std::string grey_;
 };
 
+/// For the test's listing.
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.scene;
+}
+
 class Reference : public testing::TestWithParam<Case> {};
 
 TEST_P(Reference, BlocksAgree) {

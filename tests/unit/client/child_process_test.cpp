@@ -21,7 +21,7 @@ using testing::HasSubstr;
 
 class ChildProcessTest : public testing::Test {
  protected:
-  ChildProcessTest() : log_(std::filesystem::path(testing::TempDir()) / "penumbra_child.log") {
+  ChildProcessTest() : log_(std::filesystem::path(testing::TempDir()) / ("penumbra_child_" + std::to_string(getpid()) + ".log")) {
     std::filesystem::remove(log_);
   }
   ChildProcess shell(const std::string& script) {

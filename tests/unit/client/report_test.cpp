@@ -1,5 +1,7 @@
 #include "client/report.h"
 
+#include <unistd.h>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <half.h>
@@ -89,7 +91,7 @@ TEST(ImageJson, LargeImagesAreAveraged) {
 class Report : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) / "penumbra_report";
+    folder_ = fs::path(testing::TempDir()) / ("penumbra_report_" + std::to_string(getpid()));
     fs::remove_all(folder_);
     fs::create_directory(folder_);
     run_ = sample_run();

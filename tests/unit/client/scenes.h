@@ -1,5 +1,7 @@
 #pragma once
 // Descriptions from lines of text, for tests.
+#include <unistd.h>
+
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -13,7 +15,7 @@ namespace penumbra {
 
 /// The description of `text` as the file s.pbrt in a folder of its own.
 inline SceneDescription parsed(const std::string& text) {
-  const auto folder = std::filesystem::path(testing::TempDir()) / "penumbra_client_scene";
+  const auto folder = std::filesystem::path(testing::TempDir()) / ("penumbra_client_scene_" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);
   const auto path = folder / "s.pbrt";
   std::ofstream(path) << text;

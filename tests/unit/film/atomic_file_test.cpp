@@ -1,5 +1,7 @@
 #include "film/atomic_file.h"
 
+#include <unistd.h>
+
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -21,7 +23,7 @@ std::string content(const fs::path& path) {
 class AtomicFile : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) / "penumbra_atomic_file";
+    folder_ = fs::path(testing::TempDir()) / ("penumbra_atomic_file_" + std::to_string(getpid()));
     fs::remove_all(folder_);
     fs::create_directory(folder_);
   }
@@ -52,7 +54,7 @@ TEST_F(AtomicFile, AFailureLeavesNothingBehind) {
 
 TEST(AtomicFileOnAFullDisk, IsAnErrorThatNamesThePath) {
   // /dev/full cannot be opened under another name; a partial file that is a link to it can.
-  const fs::path folder = fs::path(testing::TempDir()) / "penumbra_full_disk";
+  const fs::path folder = fs::path(testing::TempDir()) / ("penumbra_full_disk_" + std::to_string(getpid()));
   fs::remove_all(folder);
   fs::create_directory(folder);
   fs::create_symlink("/dev/full", folder / "a.exr.partial");

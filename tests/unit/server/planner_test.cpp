@@ -134,8 +134,8 @@ TEST(Planner, LongRunsHaveFinerTimelines) {
     return std::count_if(plan.boundaries.begin(), plan.boundaries.end(),
                          [](const PassBoundary& boundary) { return boundary.checkpoint; });
   };
-  EXPECT_EQ(checkpoints(1), 4);  // 8 groups of 64: 1/32 and 1/16 are less than one
-  EXPECT_EQ(checkpoints(600), 8);  // every group
+  EXPECT_EQ(checkpoints(1), 3);  // 4 groups of 128: shares below 1/4 are less than one
+  EXPECT_EQ(checkpoints(600), 4);  // every group
 }
 
 TEST(Planner, IndependentSamplesHaveGroupsOfOne) {
