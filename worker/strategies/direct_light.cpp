@@ -54,13 +54,14 @@ double expected_count(const PreparedMix::Slot& slot, double draws) {
   return is_bsdf(slot.strategy) ? slot.count : slot.count * draws;
 }
 
-/// End of a shadow segment on a flat light: moved off the light's plane towards x, past the rounding of
-/// the light's own vertices (a few ulp of the largest coordinate).
+/// End of a shadow segment on a flat light: moved off the light's plane towards x. A ray's distance to that
+/// plane is a quotient of n · (p0 - x), whose rounding (of the vertices, of n as a cross product, of the sum)
+/// is a few units of the last place of the largest length in it: coordinates of the light, distance to x.
 Vec3f end_on_light(const LightPoint& at, const Vec3d& x) {
-  const double largest = std::max({std::abs(at.p.x), std::abs(at.p.y), std::abs(at.p.z)});
-  const double ulps = 8 * std::numeric_limits<float>::epsilon() * largest;
+  const double largest = std::max({std::abs(at.p.x), std::abs(at.p.y), std::abs(at.p.z)}) + (x - at.p).length();
+  const double rounding = 16 * std::numeric_limits<float>::epsilon() * largest;
   const double side = at.n.dot(x - at.p) < 0 ? -1 : 1;
-  return Vec3f(at.p + at.n * (side * ulps));
+  return Vec3f(at.p + at.n * (side * rounding));
 }
 
 }  // namespace
