@@ -1,7 +1,10 @@
 #include "client/submission.h"
 
+#include <filesystem>
+
 #include "client/outcome.h"
 #include "proto/status.h"
+#include "scenes/check.h"
 #include "scenes/needs.h"
 #include "scenes/parser.h"
 
@@ -17,6 +20,8 @@ std::vector<std::string> warnings_of(const SceneDescription& scene, const SceneD
 
 absl::StatusOr<Submission> prepare(const JobOptions& options) {
   ASSIGN_OR_RETURN(const SceneDescription scene, parse_scene_file(options.scene));
+  const FolderFiles files(std::filesystem::path(options.scene).parent_path());
+  RETURN_IF_ERROR(check_files(scene, files));
   ASSIGN_OR_RETURN(const SceneDefaults defaults, scene_defaults(scene));
   Submission submission;
   ASSIGN_OR_RETURN(submission.spec, make_job(options, defaults));

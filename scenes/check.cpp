@@ -46,6 +46,8 @@ class Checker {
 }  // namespace
 
 absl::Status check_files(const SceneDescription& description, const SceneFiles& files) {
+  if (!description.has_world)
+    return invalid_input("{}: no WorldBegin: there is nothing to render", description.files.front());
   Checker checker(description, files);
   for (const ShapeEntity& shape : description.shapes) RETURN_IF_ERROR(checker.check(shape));
   for (const ObjectEntity& object : description.objects)

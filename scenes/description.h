@@ -97,6 +97,7 @@ struct InstanceEntity {
 };
 
 struct SceneDescription {
+  bool has_world = false;  ///< WorldBegin was there: without it the text is a fragment, not a picture
   std::vector<std::string> files;  ///< as named by the text; [0] is the main file
 
   Entity camera, film, sampler, filter, integrator, accelerator;  ///< type empty: not given

@@ -103,6 +103,7 @@ void SceneBuilder::begin_world(FileLoc loc) {
     return;
   }
   phase_ = Phase::kWorld;
+  description_.has_world = true;
   transforms_ = {};
   coordinate_systems_["world"] = transforms_.ctm;
 }

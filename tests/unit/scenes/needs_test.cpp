@@ -97,6 +97,15 @@ std::string checked(std::string_view shape) {
   return message_of(check_files(*scene, folder.files()));
 }
 
+TEST(CheckFiles, ATextWithoutAWorldIsNoPicture) {
+  SceneFolder folder;
+  for (const char* text : {"", "Camera \"perspective\"\n", "MakeNamedMaterial \"m\" \"string type\" \"matte\"\n"}) {
+    const auto scene = folder.parse(text);
+    ASSERT_TRUE(scene.ok());
+    EXPECT_THAT(message_of(check_files(*scene, folder.files())), HasSubstr("no WorldBegin"));
+  }
+}
+
 TEST(CheckFiles, SeesWhatAClientCanKnow) {
   using testing::StartsWith;
   EXPECT_THAT(checked("\"plymesh\" \"string filename\" \"missing.ply\""),
