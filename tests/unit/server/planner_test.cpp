@@ -135,7 +135,7 @@ TEST(Planner, LongRunsHaveFinerTimelines) {
                          [](const PassBoundary& boundary) { return boundary.checkpoint; });
   };
   EXPECT_EQ(checkpoints(1), 3);  // 4 groups of 128: shares below 1/4 are less than one
-  EXPECT_EQ(checkpoints(600), 4);  // every group
+  EXPECT_EQ(checkpoints(600), 8);  // every group: they grow no longer than two seconds
 }
 
 TEST(Planner, IndependentSamplesHaveGroupsOfOne) {
