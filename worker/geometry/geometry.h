@@ -1,6 +1,6 @@
 #pragma once
 // The scene's surfaces as the renderer asks for them: nearest hit, shadow segment, line query. The only
-// room that knows Embree (embree_scene.cpp includes rtcore.h, nothing else does).
+// room that knows Embree (embree_scene.cpp traces with it, bvh_builder.cpp builds with it, nothing else does).
 #include <cstdint>
 #include <functional>
 #include <memory>

@@ -1,5 +1,7 @@
 #include "worker/render/tile_accumulator.h"
 
+#include "film/metrics.h"
+
 namespace penumbra {
 
 TileAccumulator::TileAccumulator(const PixelRect& rect, int64_t group)
@@ -49,12 +51,10 @@ TilePixels TileAccumulator::pixels() const {
 }
 
 double TileAccumulator::relative_variance() const {
-  // The ε of relMSE (design §7).
-  constexpr double kEpsilon = 1e-2;
   double sum = 0;
   for (const Pixel& p : pixels_)
     for (const Moments& m : p.moments)
-      if (m.groups > 1) sum += m.m2 / double(m.groups - 1) / (m.mean * m.mean + kEpsilon);
+      if (m.groups > 1) sum += m.m2 / double(m.groups - 1) / (m.mean * m.mean + kRelMseEpsilon);
   return sum;
 }
 
