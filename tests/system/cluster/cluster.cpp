@@ -106,6 +106,8 @@ void Cluster::start_server() {
     ASSERT_LT(steady_seconds(), end) << server_log();
   std::stringstream(read_text(file)) >> address_;
   const auto channel = *open_channel(address_, {});
+  // The address is written before the first poll: on a busy machine a call may come too early.
+  ASSERT_TRUE(channel->WaitForConnected(std::chrono::system_clock::now() + std::chrono::seconds(20)));
   render_ = v1::Render::NewStub(channel);
   blobs_ = v1::Blobs::NewStub(channel);
   worker_stub_ = v1::Worker::NewStub(channel);
