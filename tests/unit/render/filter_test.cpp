@@ -41,7 +41,7 @@ TEST(Filter, MomentsOfTheKnownFilters) {
   EXPECT_NEAR(second_moment(filter("box", {{"xwidth", 1.0}, {"ywidth", 1.0}})), 1.0 / 3, 1e-3);
   // Triangle of radius r: r²/6.
   EXPECT_NEAR(second_moment(filter("triangle", {{"xwidth", 2.0}, {"ywidth", 2.0}})), 4.0 / 6, 2e-3);
-  // Mitchell with B = C = 1/3 over radius 2: ∫x²f = (B)/3 ... by quadrature of the formula: 1/9.
+  // Mitchell and Netravali, B = C = 1/3, radius 2: B/3.
   EXPECT_NEAR(second_moment(filter("mitchell")), 1.0 / 9, 4e-3);
   // Gaussian, α = 2, radius 2, shifted to reach zero: near its variance 1/(2α).
   EXPECT_NEAR(second_moment(filter("gaussian")), 0.25, 0.01);
