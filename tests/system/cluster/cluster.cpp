@@ -106,9 +106,18 @@ void Cluster::start_server() {
     ASSERT_LT(steady_seconds(), end) << server_log();
   std::stringstream(read_text(file)) >> address_;
   const auto channel = *open_channel(address_, {});
-  // The address is written before the first poll: on a busy machine a call may come too early.
-  ASSERT_TRUE(channel->WaitForConnected(std::chrono::system_clock::now() + std::chrono::seconds(20)));
   render_ = v1::Render::NewStub(channel);
+  // The address is written before the first poll, and a channel to a killed predecessor at this address may
+  // not have noticed yet: only an answered call says that calls are answered.
+  for (const double end = steady_seconds() + 30;; nap()) {
+    grpc::ClientContext context;
+    context.set_wait_for_ready(true);
+    context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(20));
+    v1::ListJobsResponse jobs;
+    const grpc::Status answered = render_->ListJobs(&context, {}, &jobs);
+    if (answered.ok()) break;
+    ASSERT_LT(steady_seconds(), end) << answered.error_message() << "\n" << server_log();
+  }
   blobs_ = v1::Blobs::NewStub(channel);
   worker_stub_ = v1::Worker::NewStub(channel);
 }
