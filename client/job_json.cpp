@@ -40,6 +40,7 @@ absl::StatusOr<JobSpec> read(const Json& json) {
   spec.crop = rect_of(json.at("crop"));
   spec.max_depth = json.at("max_depth").get<int>();
   spec.tile = json.at("tile").get<int>();
+  spec.camera_grid = json.value("camera_grid", 0);
   spec.seed = json.at("seed").get<uint64_t>();
   spec.strict = json.at("strict").get<bool>();
   spec.plan = json.at("plan").get<std::vector<int64_t>>();
@@ -84,6 +85,7 @@ Json to_json(const JobSpec& spec) {
           {"crop", to_json(spec.crop)},
           {"max_depth", spec.max_depth},
           {"tile", spec.tile},
+          {"camera_grid", spec.camera_grid},
           {"seed", spec.seed},
           {"strict", spec.strict},
           {"plan", spec.plan},

@@ -13,8 +13,6 @@ namespace {
 
 constexpr int64_t kMostWorkers = 1024;
 constexpr int64_t kMostPasses = int64_t{1} << 40;
-constexpr int64_t kDeepest = 1 << 16;
-constexpr int64_t kLargestTile = 4096;
 
 /// What is rendered where neither the command line nor the scene says: the two classic strategies.
 constexpr const char* kDefaultMix = "bsdf:1+sa:1/balance";
@@ -133,6 +131,9 @@ void add_job_options(CLI::App& app, JobOptions& o) {
   app.add_option("--max-depth", o.max_depth, "Vertices with direct light; above 1 along specular chains")
       ->type_name("N");
   app.add_option("--tile", o.tile, "Edge of a tile, pixels (default 64)")->type_name("N");
+  app.add_option("--camera-grid", o.camera_grid,
+                 "Camera samples only at the centres of NxN cells a pixel, as some references are made")
+      ->type_name("N");
   app.add_option("--seed", o.seed, "Random seed (default 0)")->type_name("N");
   app.add_flag("--strict", o.strict, "Warnings about the scene are errors");
 }
@@ -149,12 +150,16 @@ absl::StatusOr<JobSpec> make_job(const JobOptions& o, const SceneDefaults& scene
   }
   job.max_depth = scene.max_depth;
   if (!o.max_depth.empty()) {
-    ASSIGN_OR_RETURN(const int64_t depth, parse_whole("--max-depth", o.max_depth, 1, kDeepest));
+    ASSIGN_OR_RETURN(const int64_t depth, parse_whole("--max-depth", o.max_depth, 1, kMostDepth));
     job.max_depth = static_cast<int>(depth);
   }
   if (!o.tile.empty()) {
-    ASSIGN_OR_RETURN(const int64_t tile, parse_whole("--tile", o.tile, 1, kLargestTile));
+    ASSIGN_OR_RETURN(const int64_t tile, parse_whole("--tile", o.tile, 1, kMostTile));
     job.tile = static_cast<int>(tile);
+  }
+  if (!o.camera_grid.empty()) {
+    ASSIGN_OR_RETURN(const int64_t grid, parse_whole("--camera-grid", o.camera_grid, 1, kMostCameraGrid));
+    job.camera_grid = static_cast<int>(grid);
   }
   if (!o.seed.empty()) {
     ASSIGN_OR_RETURN(job.seed, parse_seed("--seed", o.seed));

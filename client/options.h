@@ -37,7 +37,7 @@ struct JobOptions {
   std::string scene;
   std::vector<std::string> mixes, regions;
   std::string budget, passes, target_error;
-  std::string sampler, resolution, crop, max_depth, tile, seed;
+  std::string sampler, resolution, crop, max_depth, tile, camera_grid, seed;
   std::string reference;
   bool strict = false;
 };

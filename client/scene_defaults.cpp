@@ -66,9 +66,8 @@ absl::Status read_integrator(const SceneDescription& scene, SceneDefaults& out) 
   const int64_t fallback = integrator.type == "pointline" ? 1 : 5;  // the authors' and pbrt's defaults
   int64_t depth = integrator.params.integer("maxdepth", fallback);
   if (depth < 0) return fault(scene, integrator, fmt::format("Integrator: maxdepth {} is negative", depth));
-  constexpr int64_t kDeepest = 1 << 16;
-  if (depth > kDeepest || depth == 0) {
-    const int64_t asked = std::exchange(depth, depth == 0 ? 1 : kDeepest);
+  if (depth > kMostDepth || depth == 0) {
+    const int64_t asked = std::exchange(depth, depth == 0 ? 1 : kMostDepth);
     out.notes.push_back(
         fmt::format("{}: maxdepth {}: rendered with {}", scene.place(integrator.loc), asked, depth));
   }

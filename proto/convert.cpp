@@ -7,9 +7,7 @@
 namespace penumbra {
 
 constexpr int kMostEdge = 65536;
-constexpr int kMostTile = 4096;
 constexpr int kMostMixes = 256;
-constexpr int kMostDepth = 1024;
 constexpr int kMostRegions = 4096;
 
 static v1::SamplerKind to_proto(SamplerKind kind) {
@@ -95,6 +93,7 @@ static absl::Status check_spec(const JobSpec& spec) {
   RETURN_IF_ERROR(check_range("height", spec.height, 1, kMostEdge));
   RETURN_IF_ERROR(check_range("tile", spec.tile, 1, kMostTile));
   RETURN_IF_ERROR(check_range("max_depth", spec.max_depth, 1, kMostDepth));
+  RETURN_IF_ERROR(check_range("camera_grid", spec.camera_grid, 0, kMostCameraGrid));
   if (spec.crop.area() == 0 || spec.crop.x1 > spec.width || spec.crop.y1 > spec.height)
     return invalid_input("crop: empty, or not inside the image");
   if (!spec.plan.empty() && spec.plan.size() != spec.mixes.size())
@@ -132,6 +131,7 @@ v1::JobSpec to_proto(const JobSpec& spec) {
   *out.mutable_crop() = to_proto(spec.crop);
   out.set_max_depth(spec.max_depth);
   out.set_tile(spec.tile);
+  out.set_camera_grid(spec.camera_grid);
   out.set_seed(spec.seed);
   out.set_strict(spec.strict);
   out.mutable_plan()->Add(spec.plan.begin(), spec.plan.end());
@@ -158,6 +158,7 @@ absl::StatusOr<JobSpec> from_proto(const v1::JobSpec& message) {
   ASSIGN_OR_RETURN(spec.crop, from_proto(message.crop()));
   spec.max_depth = message.max_depth();
   spec.tile = message.tile();
+  spec.camera_grid = message.camera_grid();
   spec.seed = message.seed();
   spec.strict = message.strict();
   ASSIGN_OR_RETURN(spec.plan, passes_from_proto("plan", message.plan()));

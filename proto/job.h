@@ -36,6 +36,11 @@ struct Region { std::string name; PixelRect rect; bool operator==(const Region&)
 /// SHA-256, lower-case hexadecimal, 64 characters.
 using Digest = std::string;
 
+// What a job may ask for; the client names its flag, the wire its field.
+constexpr int kMostTile = 4096;
+constexpr int kMostDepth = 1024;
+constexpr int kMostCameraGrid = 1024;
+
 /// Everything that decides a job's pixels, given the bundle's bytes.
 struct JobSpec {
   std::string scene;          ///< absolute path on the client's machine, for people
@@ -46,6 +51,9 @@ struct JobSpec {
   int width = 0, height = 0;  ///< full image, pixels
   PixelRect crop;             ///< the part that is rendered, absolute pixels
   int max_depth = 1;          ///< vertices with direct light; >1 follows specular chains
+  /// > 0: camera samples are moved to the nearest centre of a grid of N × N cells a pixel, so that light sampling
+  /// alone is compared with renderers that take theirs there. The image is then the mean over these points.
+  int camera_grid = 0;
   int tile = 64;              ///< edge of a tile, pixels
   uint64_t seed = 0;
   bool strict = false;        ///< warnings about the scene are errors

@@ -39,6 +39,13 @@ absl::StatusOr<Camera> Camera::build(const SceneDescription& description, int wi
   camera.corner_ = direction({x0 * scale, y1 * scale, 1});
   camera.right_ = direction({(x1 - x0) * scale / width, 0, 0});
   camera.down_ = direction({0, (y0 - y1) * scale / height, 0});
+  Imath::M33d from_image;
+  for (int k = 0; k < 3; ++k) {
+    from_image[0][k] = camera.right_[k];
+    from_image[1][k] = camera.down_[k];
+    from_image[2][k] = camera.corner_[k];
+  }
+  camera.to_image_ = from_image.gjInverse();
   return camera;
 }
 

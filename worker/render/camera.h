@@ -21,9 +21,14 @@ class Camera {
   /// Ray through a point of the image, in pixels from the upper left corner.
   CameraRay ray(const Vec2d& pixel) const;
 
+  /// Homogeneous image coordinates (w x, w y, w) of a point in world space: the pixel that sees it is (x, y) if
+  /// w > 0; w is the depth along the viewing axis.
+  Vec3d project(const Vec3d& p) const { return (p - origin_) * to_image_; }
+
  private:
   Vec3f direction_at(const Vec2d& pixel) const;
   Vec3d origin_, corner_, right_, down_;  ///< world: direction = corner + x right + y down
+  Imath::M33d to_image_;                  ///< inverse of the rows right, down, corner
 };
 
 }  // namespace penumbra

@@ -14,15 +14,19 @@ constexpr int kSpecularChoice = LightSet::kMostAsked;
 
 float largest(const Rgb& c) { return std::max({c.x, c.y, c.z}); }
 
+Ray first_ray(const CameraRay& ray) {
+  return {ray.origin, ray.direction, 0, std::numeric_limits<float>::infinity()};
+}
+
 }  // namespace
 
-Rgb PathTracer::radiance(const CameraRay& camera_ray, const PassSampler& sampler) {
+Rgb PathTracer::radiance(const CameraRay& camera_ray, const PassSampler& sampler, bool emission) {
   Rgb sum(0), throughput(1);
-  Ray ray{camera_ray.origin, camera_ray.direction, 0, std::numeric_limits<float>::infinity()};
+  Ray ray = first_ray(camera_ray);
   for (int depth = 0;; ++depth) {
     const auto hit = scene_.geometry->intersect(ray, counters_);
     if (!hit) return sum + throughput * background(ray.direction);
-    sum += throughput * emitted(*hit, ray);
+    if (emission || depth > 0) sum += throughput * emitted(*hit, ray);
     const bool filters = scene_.footprints && depth == 0;
     const SurfacePoint surface = surface_at(scene_, *hit, ray.direction, filters ? &camera_ray : nullptr);
     const Bsdf bsdf = scene_.materials.shade(scene_.meshes[hit->id.mesh].material, surface, scene_.textures);
@@ -33,6 +37,12 @@ Rgb PathTracer::radiance(const CameraRay& camera_ray, const PassSampler& sampler
     if (!bounce(point, sampler, depth, direction, throughput)) return sum;
     ray = {surface.offset(direction), direction, 0, std::numeric_limits<float>::infinity()};
   }
+}
+
+Rgb PathTracer::emission(const CameraRay& camera_ray) {
+  const Ray ray = first_ray(camera_ray);
+  const auto hit = scene_.geometry->intersect(ray, counters_);
+  return hit ? emitted(*hit, ray) : Rgb(0);
 }
 
 Rgb PathTracer::emitted(const Hit& hit, const Ray& ray) const {

@@ -15,7 +15,11 @@ class PathTracer {
         max_depth_(max_depth),
         counters_(counters) {}
 
-  Rgb radiance(const CameraRay& ray, const PassSampler& sampler);
+  /// Everything that arrives along the ray; without `emission`, all but what an area light's surface that the
+  /// ray meets first emits by itself.
+  Rgb radiance(const CameraRay& ray, const PassSampler& sampler, bool emission = true);
+  /// What radiance() leaves out then.
+  Rgb emission(const CameraRay& ray);
 
  private:
   Rgb emitted(const Hit& hit, const Ray& ray) const;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "proto/status.h"
+#include "worker/render/light_pixels.h"
 #include "worker/render/path.h"
 #include "worker/render/tile_accumulator.h"
 
@@ -15,6 +16,11 @@ namespace {
 
 /// Passes of one mix between two looks at another: short enough to interleave, long enough to warm up.
 constexpr int64_t kSlice = 4;
+
+/// Camera rays of a pass for the emission of a pixel that may see a light. Its variance falls with their number,
+/// and such a pixel has little else to pay for: at sixteen the outline of cornell-box's light no longer leads
+/// the image's error, and costs below 2 % of a pass.
+constexpr int kEmissionRays = 16;
 
 double thread_cpu_seconds() {
   timespec t{};
@@ -27,11 +33,13 @@ bool is_finite(const Rgb& c) { return std::isfinite(c.x) && std::isfinite(c.y) &
 /// The passes of one mix over one tile.
 class MixRun {
  public:
-  MixRun(const Scene& scene, const JobSpec& job, const TileTask& task, const Camera& camera, size_t mix)
+  MixRun(const Scene& scene, const JobSpec& job, const TileTask& task, const Camera& camera,
+         const std::vector<uint8_t>& light_pixels, size_t mix)
       : scene_(scene),
         job_(job),
         task_(task),
         camera_(camera),
+        light_pixels_(light_pixels),
         mix_index_(uint32_t(mix)),
         prepared_(job.mixes[mix], scene.lights),
         tracer_(scene, prepared_, job.max_depth, counters_),
@@ -79,8 +87,10 @@ class MixRun {
     const uint32_t index = uint32_t(y) * uint32_t(job_.width) + uint32_t(x);
     const PassSampler sampler(job_.sampler, job_.seed, mix_index_, task_.kind, index, next_, task_.group);
     const FilterSample filter = scene_.filter->sample(sampler.film());
-    const Vec2d at = Vec2d(x + 0.5, y + 0.5) + filter.offset;
-    Rgb value = tracer_.radiance(camera_.ray(at), sampler) * float(filter.weight);
+    const Vec2d centre(x + 0.5, y + 0.5);
+    const bool apart = light_pixels_[pixel] != 0;
+    Rgb value = tracer_.radiance(ray(centre, filter), sampler, !apart) * float(filter.weight);
+    if (apart) value += emission(centre, sampler);
     if (!is_finite(value)) {
       ++cost_.non_finite;
       value = Rgb(0);
@@ -88,10 +98,28 @@ class MixRun {
     accumulator_.add(pixel, value, __rdtsc() - start);
   }
 
+  CameraRay ray(const Vec2d& centre, const FilterSample& filter) const {
+    Vec2d at = centre + filter.offset;
+    if (const double cells = job_.camera_grid; cells > 0)
+      at = Vec2d(std::floor(at.x * cells) + 0.5, std::floor(at.y * cells) + 0.5) / cells;
+    return camera_.ray(at);
+  }
+
+  /// Mean emission over the pixel's filter, from rays of its own.
+  Rgb emission(const Vec2d& centre, const PassSampler& sampler) {
+    Rgb sum(0);
+    for (int i = 0; i < kEmissionRays; ++i) {
+      const FilterSample filter = scene_.filter->sample(sampler.film(i, kEmissionRays));
+      sum += tracer_.emission(ray(centre, filter)) * float(filter.weight);
+    }
+    return sum / float(kEmissionRays);
+  }
+
   const Scene& scene_;
   const JobSpec& job_;
   const TileTask& task_;
   const Camera& camera_;
+  const std::vector<uint8_t>& light_pixels_;  ///< of the tile
   uint32_t mix_index_;
   PreparedMix prepared_;
   QueryCounters counters_;
@@ -144,9 +172,10 @@ TaskOutcome render_tile(const Scene& scene, const JobSpec& job, const TileTask& 
   TaskOutcome outcome;
   const auto camera = Camera::build(scene.description, job.width, job.height);
   PENUMBRA_CHECK(camera.ok());  // build_scene() has tried it
+  const std::vector<uint8_t> seeing = light_pixels(scene, *camera, task.tile);
   std::vector<std::unique_ptr<MixRun>> runs;
   for (size_t m = 0; m < job.mixes.size(); ++m)
-    runs.push_back(std::make_unique<MixRun>(scene, job, task, *camera, m));
+    runs.push_back(std::make_unique<MixRun>(scene, job, task, *camera, seeing, m));
 
   if (task.kind == TaskKind::kPilot) {
     outcome.cancelled = !run_pilot(runs, task.pilot_seconds, cancel);

@@ -29,6 +29,9 @@ class PassSampler {
 
   /// Position in the pixel's filter, lens, time: u in [0,1)².
   Vec2d film() const;
+  /// Position i of n for what is looked at more often than the rest: stratified together, and over the passes
+  /// of the group.
+  Vec2d film(int i, int n) const;
   Vec2d lens() const;
   double time() const;
 

@@ -66,6 +66,7 @@ TEST(MakeJob, OptionsOverride) {
   o.sampler = "sobol";
   o.max_depth = "3";
   o.tile = "16";
+  o.camera_grid = "4";
   o.seed = "7";
   o.reference = "r.exr";
   const auto job = make_job(o, small_scene());
@@ -77,6 +78,7 @@ TEST(MakeJob, OptionsOverride) {
   EXPECT_EQ(job->regions[1], (Region{"b", {5, 5, 10, 10}}));
   EXPECT_EQ(job->sampler, SamplerKind::kSobol);
   EXPECT_EQ(job->max_depth, 3);
+  EXPECT_EQ(job->camera_grid, 4);
   EXPECT_EQ(job->tile, 16);
   EXPECT_EQ(job->seed, 7u);
   EXPECT_TRUE(job->reference.ends_with("/r.exr"));
@@ -95,6 +97,7 @@ TEST(MakeJob, EveryFaultNamesItsFlag) {
   EXPECT_THAT(with(&JobOptions::resolution, "0x5"), StartsWith("--resolution: "));
   EXPECT_THAT(with(&JobOptions::crop, "0,0,65,48"), StartsWith("--crop: "));
   EXPECT_THAT(with(&JobOptions::crop, "5,5"), StartsWith("--crop: "));
+  EXPECT_THAT(with(&JobOptions::camera_grid, "0"), StartsWith("--camera-grid: "));
   EXPECT_THAT(with(&JobOptions::max_depth, "0"), StartsWith("--max-depth: "));
   EXPECT_THAT(with(&JobOptions::tile, "5000"), StartsWith("--tile: "));
   EXPECT_THAT(with(&JobOptions::seed, "-1"), StartsWith("--seed: "));

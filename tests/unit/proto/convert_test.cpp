@@ -26,6 +26,7 @@ JobSpec full_spec() {
   spec.crop = {10, 20, 630, 350};
   spec.max_depth = 3;
   spec.tile = 48;
+  spec.camera_grid = 4;
   spec.seed = std::numeric_limits<uint64_t>::max();
   spec.strict = true;
   spec.plan = {7, 8, 9};
@@ -113,6 +114,7 @@ TEST(Convert, ValuesOutOfRangeAreRefusedByName) {
       {"crop", [](v1::JobSpec& s) { s.mutable_crop()->set_x1(10); }},
       {"rect", [](v1::JobSpec& s) { s.mutable_crop()->set_x0(-1); }},
       {"tile", [](v1::JobSpec& s) { s.set_tile(0); }},
+      {"camera_grid", [](v1::JobSpec& s) { s.set_camera_grid(-1); }},
       {"max_depth", [](v1::JobSpec& s) { s.set_max_depth(0); }},
       {"plan", [](v1::JobSpec& s) { s.add_plan(1); }},
       {"plan", [](v1::JobSpec& s) { s.set_plan(0, -1); }},
