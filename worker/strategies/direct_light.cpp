@@ -12,41 +12,8 @@ constexpr size_t kNoLine = std::numeric_limits<size_t>::max();
 /// Streams of random numbers that belong to no single light.
 constexpr uint32_t kBsdfStream = 0xffffffff, kDrawStream = 0x80000000;
 
-bool is_black(const Rgb& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
-bool is_bsdf(const Strategy& s) { return std::holds_alternative<BsdfStrategy>(s); }
-
-/// The overload sets of strategy.h, asked through the variant. Each kind of strategy has one of the two.
-LightSample sample_point(const Strategy& strategy, const LightView& view, const Vec2d& u) {
-  return std::visit(
-      [&](const auto& s) -> LightSample {
-        if constexpr (requires { sample(s, view, u); }) return sample(s, view, u);
-        return {};
-      },
-      strategy);
-}
-double density_of(const Strategy& strategy, const LightView& view, const LightSample& at) {
-  return std::visit(
-      [&](const auto& s) -> double {
-        if constexpr (requires { pdf(s, view, at); }) return pdf(s, view, at);
-        return 0;
-      },
-      strategy);
-}
-LightLine choose_line(const Strategy& strategy, const LightView& view, double u) {
-  return std::visit(
-      [&](const auto& s) -> LightLine {
-        if constexpr (requires { choose(s, view, u); }) return choose(s, view, u);
-        return {};
-      },
-      strategy);
-}
-LightLine line_through(const Strategy& strategy, const LightView& view, const Vec3d& p) {
-  return std::visit(
-      [&](const auto& s) -> LightLine {
-        if constexpr (requires { through(s, view, p); }) return through(s, view, p);
-        return {};
-      },
-      strategy);
+bool is_black(const Rgb& c) {
+  return c.x == 0 && c.y == 0 && c.z == 0;
 }
 
 /// Samples that the mix expects of a slot at this light: the n_s of the balance heuristic.
@@ -65,16 +32,6 @@ Vec3f end_on_light(const LightPoint& at, const Vec3d& x) {
 }
 
 }  // namespace
-
-PreparedMix::PreparedMix(const Mix& mix, const LightSet& lights) : combination_(mix.combination) {
-  for (const StrategyCount& s : mix.strategies) {
-    counts_.push_back(s.count);
-    environment_.push_back(fit_environment(s));
-  }
-  fitted_.reserve(lights.area.size() * mix.strategies.size());
-  for (const AreaEmitter& emitter : lights.area)
-    for (const StrategyCount& s : mix.strategies) fitted_.push_back(fit(s, emitter));
-}
 
 Rgb DirectLight::estimate(const ShadingPoint& point, const PassSampler& sampler, int depth) {
   Rgb sum(0);
@@ -241,7 +198,10 @@ void DirectLight::densities(const Task& task, Candidate& c, double* row) {
   for (size_t s = 0; s < slots; ++s) {
     const Strategy& strategy = task.slot(mix_, s).strategy;
     if (s == c.slot) {
-      row[s] = c.sample.at.pdf;
+      // A line's own density on its visible part is larger than if nothing were hidden.
+      if (mix_.combination() == Combination::kFree && c.line != kNoLine)
+        c.visible = own_lines_.visible_measure(c.line);
+      row[s] = c.sample.at.pdf * c.visible;
     } else if (!is_line(strategy)) {
       if (mix_.combination() != Combination::kAverage) row[s] = density_of(strategy, task.view, c.sample);
     } else if (foreign[s] != kNoLine) {
@@ -283,50 +243,18 @@ bool DirectLight::clear(const Task& task, const LightSample& sample) {
 
 /// Estimator of one light: Σ over candidates of weight × f / (n p), with n p of the strategy that found
 /// it. Veach & Guibas 1995; design §6.
-Rgb DirectLight::combine(const Task& task) const {
+Rgb DirectLight::combine(const Task& task) {
   const size_t slots = mix_.slots();
+  expected_.clear();
+  for (size_t s = 0; s < slots; ++s) expected_.push_back(expected_count(task.slot(mix_, s), task.draws));
+  combiner_.start(mix_.combination(), expected_);
   Rgb sum(0);
   for (size_t c = 0; c < candidates_.size(); ++c) {
     const Candidate& candidate = candidates_[c];
     if (is_black(candidate.f)) continue;
-    const double* row = &densities_[c * slots];
-    const PreparedMix::Slot own = task.slot(mix_, candidate.slot);
-    const double own_density = expected_count(own, task.draws) * row[candidate.slot];
-    double scale = 0;
-    switch (mix_.combination()) {
-      case Combination::kAverage:
-        scale = 1 / (own_density * double(slots));
-        break;
-      case Combination::kPower: {
-        double squares = 0;
-        for (size_t s = 0; s < slots; ++s) {
-          const double ratio = expected_count(task.slot(mix_, s), task.draws) * row[s] / own_density;
-          squares += ratio * ratio;
-        }
-        scale = 1 / (own_density * squares);
-        break;
-      }
-      case Combination::kFree: {
-        // Design §5.1: weights from the densities as if nothing were hidden. A line's own density on
-        // its visible part is larger than that by 1 / (visible measure).
-        const double visible = candidate.line == kNoLine ? 1 : own_lines_.visible_measure(candidate.line);
-        double total = 0;
-        for (size_t s = 0; s < slots; ++s)
-          total += expected_count(task.slot(mix_, s), task.draws) * row[s] * (s == candidate.slot ? visible : 1);
-        scale = visible / total;
-        break;
-      }
-      case Combination::kSmooth:
-        PENUMBRA_CHECK(!"a combination that no worker has; the client and the server refuse it");
-        break;
-      case Combination::kBalance: {
-        double total = 0;
-        for (size_t s = 0; s < slots; ++s) total += expected_count(task.slot(mix_, s), task.draws) * row[s];
-        scale = 1 / total;
-        break;
-      }
-    }
-    sum += candidate.f * float(scale);
+    const Found found{
+        candidate.slot, candidate.sample.at.pdf, candidate.visible, {&densities_[c * slots], slots}};
+    sum += candidate.f * float(combiner_.scale(found));
   }
   return sum;
 }

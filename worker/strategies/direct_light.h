@@ -2,38 +2,16 @@
 // Direct light at a shading point: one loop over all strategies of a mix, whatever they are.
 #include <vector>
 
-#include "proto/mix.h"
 #include "worker/geometry/geometry.h"
 #include "worker/sampling/sampler.h"
+#include "worker/strategies/combination.h"
 #include "worker/strategies/light_set.h"
 #include "worker/strategies/line_batch.h"
+#include "worker/strategies/prepared_mix.h"
 #include "worker/strategies/shading_point.h"
 #include "worker/strategies/strategy.h"
 
 namespace penumbra {
-
-/// A mix made ready for a scene's lights: what each of its strategies is on each of them.
-class PreparedMix {
- public:
-  PreparedMix(const Mix& mix, const LightSet& lights);
-
-  struct Slot {
-    const Strategy& strategy;
-    int count;
-  };
-  size_t slots() const { return counts_.size(); }
-  Slot slot(size_t area_emitter, size_t s) const {
-    return {fitted_[area_emitter * slots() + s], counts_[s]};
-  }
-  Slot environment_slot(size_t s) const { return {environment_[s], counts_[s]}; }
-  Combination combination() const { return combination_; }
-
- private:
-  std::vector<Strategy> fitted_;  ///< row per area emitter
-  std::vector<Strategy> environment_;
-  std::vector<int> counts_;
-  Combination combination_;
-};
 
 /// What the loop needs of the scene.
 struct Surroundings {
@@ -61,6 +39,7 @@ class DirectLight {
     size_t line = 0;    ///< of its own line in the batch, if its strategy is a line
     double s = 0;       ///< where on that line
     Sight sight = Sight::kUnknown;
+    double visible = 1;  ///< see Found
   };
   struct BsdfHit {
     size_t light = 0;   ///< area emitters first, then environments
@@ -91,7 +70,7 @@ class DirectLight {
   void resolve(const Task& task);
   void densities(const Task& task, Candidate& candidate, double* row);
   bool clear(const Task& task, const LightSample& sample);
-  Rgb combine(const Task& task) const;
+  Rgb combine(const Task& task);
 
   Surroundings scene_;
   const PreparedMix& mix_;
@@ -102,6 +81,8 @@ class DirectLight {
   LineBatch own_lines_, foreign_lines_;
   std::vector<size_t> foreign_;     ///< row per candidate, a handle per slot
   std::vector<double> densities_;   ///< row per candidate, a density per slot
+  std::vector<double> expected_;    ///< samples per slot
+  Combiner combiner_;
 };
 
 }  // namespace penumbra
