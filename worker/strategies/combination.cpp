@@ -5,9 +5,12 @@
 
 namespace penumbra {
 
-void Combiner::start(Combination how, std::span<const double> counts) {
+void Combiner::start(Combination how, std::span<const double> counts, const std::vector<bool>& lines) {
+  PENUMBRA_CHECK(counts.size() == lines.size());
   how_ = how;
   counts_.assign(counts.begin(), counts.end());
+  lines_ = lines;
+  smoothing_.resize(counts.size());
   weights_.resize(counts.size());
 }
 
@@ -23,7 +26,8 @@ double Combiner::weight(const Found& found) {
       balance_weights(counts_, found.densities, {}, weights_);
       break;
     case Combination::kSmooth:
-      PENUMBRA_CHECK(!"a combination that no worker has; the client and the server refuse it");
+      for (size_t s = 0; s < lines_.size(); ++s) smoothing_[s] = lines_[s] ? 1 : found.smoothing;
+      balance_weights(counts_, found.densities, smoothing_, weights_);
       break;
   }
   return weights_[found.slot];

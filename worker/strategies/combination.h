@@ -15,6 +15,8 @@ struct Found {
   double pdf = 0;   ///< of that strategy: > 0
   /// `/free` weighs as if nothing were hidden: this is by how much smaller that strategy's density is then.
   double visible = 1;
+  double smoothing =
+      1;  ///< s of smoothing.h at this point: of the densities of strategies that are not lines
   std::span<const double>
       densities;  ///< one per slot, as the combination weighs; the own one is pdf × visible
 };
@@ -22,8 +24,8 @@ struct Found {
 /// Keeps scratch memory; belongs to one thread.
 class Combiner {
  public:
-  /// `counts`: expected samples per slot, > 0.
-  void start(Combination how, std::span<const double> counts);
+  /// Per slot: expected samples, > 0; whether its strategy is a line.
+  void start(Combination how, std::span<const double> counts, const std::vector<bool>& lines);
 
   /// Weight of the strategy that found the point, among all that could have: Σ over the slots is 1.
   double weight(const Found& found);
@@ -32,7 +34,8 @@ class Combiner {
 
  private:
   Combination how_ = Combination::kBalance;
-  std::vector<double> counts_, weights_;
+  std::vector<double> counts_, smoothing_, weights_;
+  std::vector<bool> lines_;
 };
 
 }  // namespace penumbra

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "proto/status.h"
+#include "worker/strategies/smoothing.h"
 
 namespace penumbra {
 namespace {
@@ -119,7 +119,7 @@ Rgb DirectLight::ask(const ShadingPoint& point, size_t light, double draws, bool
 void DirectLight::gather_bsdf(const Task& task) {
   const auto mine = [&](const BsdfHit& hit) { return hit.light == task.light; };
   for (const BsdfHit& hit : hits_)
-    if (mine(hit)) push(task, hit.sample, hit.slot, Sight::kClear, kNoLine, 0);
+    if (mine(hit)) push(task, hit.sample, hit.slot, Sight::kTraced, kNoLine, 0);
   std::erase_if(hits_, mine);
 }
 
@@ -155,7 +155,8 @@ void DirectLight::gather_lines(const Task& task, uint32_t stream, const PassSamp
       const Vec2d u = sampler.light(depth, stream, int(s), i, slot.count);
       const LightPoint at =
           sample_line(own_lines_.line(line), task.view.x(), own_lines_.visible(line), u.y);
-      push(task, towards(task.view, at), s, Sight::kClear, line, parameter_of(own_lines_.line(line), at.p));
+      push(task, towards(task.view, at), s, Sight::kNoOpaque, line,
+           parameter_of(own_lines_.line(line), at.p));
     }
   }
 }
@@ -171,8 +172,9 @@ void DirectLight::push(const Task& task, const LightSample& sample, size_t slot,
 void DirectLight::resolve(const Task& task) {
   const size_t slots = mix_.slots();
   const Combination how = mix_.combination();
-  // Only these two weigh with what lines can see from here; a line query per foreign candidate is the price.
-  const bool queries = how == Combination::kBalance || how == Combination::kPower;
+  // These weigh with what lines can see from here; a line query per foreign candidate is the price.
+  const bool queries =
+      how == Combination::kBalance || how == Combination::kPower || how == Combination::kSmooth;
   foreign_lines_.clear();
   foreign_.assign(candidates_.size() * slots, kNoLine);
   if (queries && task.view.is_area()) {
@@ -195,9 +197,14 @@ void DirectLight::densities(const Task& task, Candidate& c, double* row) {
   const size_t slots = mix_.slots();
   const size_t* foreign = &foreign_[size_t(row - densities_.data())];
   const Vec3d x = task.view.x();
+  const bool smooths = mix_.combination() == Combination::kSmooth && task.view.is_area();
+  if (smooths) c.smoothing = border_factor(mix_.smoothing(), task.view.area().shape, c.sample.at.p);
   for (size_t s = 0; s < slots; ++s) {
     const Strategy& strategy = task.slot(mix_, s).strategy;
     if (s == c.slot) {
+      if (smooths && c.line != kNoLine)
+        c.smoothing *=
+            line_factor(mix_.smoothing(), own_lines_.line(c.line), own_lines_.visible(c.line), c.s);
       // A line's own density on its visible part is larger than if nothing were hidden.
       if (mix_.combination() == Combination::kFree && c.line != kNoLine)
         c.visible = own_lines_.visible_measure(c.line);
@@ -209,9 +216,11 @@ void DirectLight::densities(const Task& task, Candidate& c, double* row) {
       const double at = parameter_of(line, c.sample.at.p);
       const bool seen = foreign_lines_.sees(foreign[s], at);
       if (seen) row[s] = pdf_line(line, x, at, foreign_lines_.visible_measure(foreign[s]));
+      if (smooths && line.scale > 0)
+        c.smoothing *= line_factor(mix_.smoothing(), line, foreign_lines_.visible(foreign[s]), at);
       if (c.sight == Sight::kUnknown) {
         // The line through the point knows whether the point is visible: no shadow ray.
-        c.sight = Sight::kClear;
+        c.sight = Sight::kNoOpaque;
         if (!seen) c.f = Rgb(0);
       }
     } else if (mix_.combination() == Combination::kFree) {
@@ -221,8 +230,7 @@ void DirectLight::densities(const Task& task, Candidate& c, double* row) {
   }
   if (c.sight == Sight::kUnknown) {
     if (!clear(task, c.sample)) c.f = Rgb(0);
-  } else if (task.view.is_area() && scene_.geometry.has_alpha() && !is_black(c.f) &&
-             !is_bsdf(task.slot(mix_, c.slot).strategy)) {
+  } else if (c.sight == Sight::kNoOpaque && scene_.geometry.has_alpha() && !is_black(c.f)) {
     const Vec3f end = end_on_light(c.sample.at, x);
     if (scene_.geometry.occluded_by_alpha(task.view.point().origin(c.sample.wi), end, counters_)) c.f = Rgb(0);
   }
@@ -241,22 +249,48 @@ bool DirectLight::clear(const Task& task, const LightSample& sample) {
   return hit && hit->id.instance == kNone && hit->id.mesh == task.view.area().mesh;
 }
 
+void DirectLight::start_combiner(const Task& task) {
+  expected_.clear();
+  line_slots_.clear();
+  for (size_t s = 0; s < mix_.slots(); ++s) {
+    const PreparedMix::Slot slot = task.slot(mix_, s);
+    expected_.push_back(expected_count(slot, task.draws));
+    line_slots_.push_back(is_line(slot.strategy));
+  }
+  combiner_.start(mix_.combination(), expected_, line_slots_);
+}
+
+Found DirectLight::found(size_t candidate, size_t slot) const {
+  const Candidate& c = candidates_[candidate];
+  const std::span<const double> row(&densities_[candidate * mix_.slots()], mix_.slots());
+  return {slot, slot == c.slot ? c.sample.at.pdf : row[slot], c.visible, c.smoothing, row};
+}
+
 /// Estimator of one light: Σ over candidates of weight × f / (n p), with n p of the strategy that found
 /// it. Veach & Guibas 1995; design §6.
 Rgb DirectLight::combine(const Task& task) {
-  const size_t slots = mix_.slots();
-  expected_.clear();
-  for (size_t s = 0; s < slots; ++s) expected_.push_back(expected_count(task.slot(mix_, s), task.draws));
-  combiner_.start(mix_.combination(), expected_);
+  start_combiner(task);
   Rgb sum(0);
   for (size_t c = 0; c < candidates_.size(); ++c) {
     const Candidate& candidate = candidates_[c];
-    if (is_black(candidate.f)) continue;
-    const Found found{
-        candidate.slot, candidate.sample.at.pdf, candidate.visible, {&densities_[c * slots], slots}};
-    sum += candidate.f * float(combiner_.scale(found));
+    if (!is_black(candidate.f)) sum += candidate.f * float(combiner_.scale(found(c, candidate.slot)));
   }
   return sum;
+}
+
+DirectLight::Integrand DirectLight::integrand(const ShadingPoint& point, size_t area_emitter,
+                                              const Vec3d& on_light) {
+  const AreaEmitter& emitter = scene_.lights.area[area_emitter];
+  const LightView view(point, emitter);
+  const Task task{view, area_emitter, 1};
+  const LightSample sample = towards(view, {on_light, emission_normal(emitter.shape, on_light), 0});
+  candidates_.assign(1, {sample, point.scatter(sample.wi) * sample.radiance, mix_.slots(), kNoLine});
+  own_lines_.clear();
+  resolve(task);
+  start_combiner(task);
+  Integrand out{candidates_[0].f, candidates_[0].smoothing, densities_, {}};
+  for (size_t s = 0; s < mix_.slots(); ++s) out.weights.push_back(combiner_.weight(found(0, s)));
+  return out;
 }
 
 Rgb DirectLight::delta(const ShadingPoint& point, const DeltaEmitter& emitter) {

@@ -29,8 +29,19 @@ class DirectLight {
   /// Outgoing radiance at the point due to all lights; `depth` is the vertex's place on the path.
   Rgb estimate(const ShadingPoint& point, const PassSampler& sampler, int depth);
 
+  /// What the mix makes of one point of an area light, whichever strategy may find it; for `converge
+  /// --integrand`. A row per slot: the density that the weights are made of (sr⁻¹ at x), and the weight. The
+  /// weights sum to 1 unless no strategy can find the point. f is 0 where the point is hidden.
+  struct Integrand {
+    Rgb f{0};  ///< BSDF × cosine × radiance × visibility
+    double smoothing = 1;
+    std::vector<double> densities, weights;
+  };
+  Integrand integrand(const ShadingPoint& point, size_t area_emitter, const Vec3d& on_light);
+
  private:
-  enum class Sight { kClear, kUnknown };
+  /// What is known of the way to a candidate: a ray has gone it; no opaque surface is in it; nothing.
+  enum class Sight { kTraced, kNoOpaque, kUnknown };
   /// A direction that some strategy found, on its way to its weight.
   struct Candidate {
     LightSample sample;
@@ -39,7 +50,7 @@ class DirectLight {
     size_t line = 0;    ///< of its own line in the batch, if its strategy is a line
     double s = 0;       ///< where on that line
     Sight sight = Sight::kUnknown;
-    double visible = 1;  ///< see Found
+    double visible = 1, smoothing = 1;  ///< see Found
   };
   struct BsdfHit {
     size_t light = 0;   ///< area emitters first, then environments
@@ -71,6 +82,8 @@ class DirectLight {
   void densities(const Task& task, Candidate& candidate, double* row);
   bool clear(const Task& task, const LightSample& sample);
   Rgb combine(const Task& task);
+  void start_combiner(const Task& task);
+  Found found(size_t candidate, size_t slot) const;
 
   Surroundings scene_;
   const PreparedMix& mix_;
@@ -82,6 +95,7 @@ class DirectLight {
   std::vector<size_t> foreign_;     ///< row per candidate, a handle per slot
   std::vector<double> densities_;   ///< row per candidate, a density per slot
   std::vector<double> expected_;    ///< samples per slot
+  std::vector<bool> line_slots_;    ///< whether it is a line strategy
   Combiner combiner_;
 };
 

@@ -4,6 +4,7 @@
 
 #include "proto/mix.h"
 #include "worker/strategies/light_set.h"
+#include "worker/strategies/smoothing.h"
 #include "worker/strategies/strategy.h"
 
 namespace penumbra {
@@ -20,12 +21,14 @@ class PreparedMix {
   Slot slot(size_t area_emitter, size_t s) const { return {fitted_[area_emitter * slots() + s], counts_[s]}; }
   Slot environment_slot(size_t s) const { return {environment_[s], counts_[s]}; }
   Combination combination() const { return combination_; }
+  const Smoothing& smoothing() const { return smoothing_; }
 
  private:
   std::vector<Strategy> fitted_;  ///< row per area emitter
   std::vector<Strategy> environment_;
   std::vector<int> counts_;
   Combination combination_;
+  Smoothing smoothing_;
 };
 
 }  // namespace penumbra
