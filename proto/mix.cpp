@@ -72,15 +72,19 @@ absl::Status parse_combination(std::string_view word, Mix& mix) {
   else if (word == "free") mix.combination = Combination::kFree;
   else if (word == "power") mix.combination = Combination::kPower;
   else if (word == "average") mix.combination = Combination::kAverage;
-  else if (consume_prefix(word, "smooth=")) {
+  else if (const bool eases = consume_prefix(word, "smooth-ease=");
+           eases || consume_prefix(word, "smooth=")) {
     mix.combination = Combination::kSmooth;
+    mix.smooth_shape = eases ? SmoothShape::kEaseIn : SmoothShape::kCubic;
     if (word == "auto") return absl::OkStatus();
     const auto width = number<double>(word);
     if (!width || !(*width > 0) || !std::isfinite(*width))
-      return fault(word, "the width of smooth= must be a positive number or auto");
+      return fault(word, "the width of smooth= and smooth-ease= must be a positive number or auto");
     mix.smooth_width = *width;
   } else {
-    return fault(word, "unknown combination; there are balance, free, power, average, smooth=WIDTH|auto");
+    return fault(word,
+                 "unknown combination; there are balance, free, power, average, smooth=WIDTH|auto, "
+                 "smooth-ease=WIDTH|auto");
   }
   return absl::OkStatus();
 }
@@ -105,7 +109,8 @@ std::string name_of(const Mix& mix) {
     case Combination::kPower: return "power";
     case Combination::kAverage: return "average";
     case Combination::kSmooth:
-      return mix.smooth_width ? fmt::format("smooth={}", *mix.smooth_width) : "smooth=auto";
+      return fmt::format("{}={}", mix.smooth_shape == SmoothShape::kEaseIn ? "smooth-ease" : "smooth",
+                         mix.smooth_width ? fmt::format("{}", *mix.smooth_width) : "auto");
   }
   std::abort();
 }
@@ -147,16 +152,6 @@ absl::StatusOr<Mix> parse_mix(std::string_view text) {
   if (mix.combination == Combination::kSmooth && !has_line)
     return fault(text, "smoothing needs a line strategy in the mix");
   return mix;
-}
-
-absl::Status check_supported(const Mix& mix) {
-  if (mix.automatic) return absl::UnimplementedError("--mix: 'auto' is not in this version");
-  if (mix.combination == Combination::kSmooth)
-    return absl::UnimplementedError("--mix: '/smooth' is not in this version");
-  for (const StrategyCount& s : mix.strategies)
-    if (s.kind == StrategyKind::kLineAnalytic)
-      return absl::UnimplementedError("--mix: 'line-analytic' is not in this version");
-  return absl::OkStatus();
 }
 
 std::string label(const Mix& mix) {

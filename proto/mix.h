@@ -31,12 +31,15 @@ struct StrategyCount {
 };
 
 enum class Combination { kBalance, kFree, kPower, kAverage, kSmooth };
+/// How `smooth=` falls to 0: the paper's cubic smoothstep, or `smooth-ease=`, the ease-in 2t − t².
+enum class SmoothShape { kCubic, kEaseIn };
 
 struct Mix {
   bool automatic = false;  ///< `auto`: the planner chooses per tile; then strategies is empty
   std::vector<StrategyCount> strategies;
   Combination combination = Combination::kBalance;
   std::optional<double> smooth_width;  ///< kSmooth: scene units; empty means derived from the light
+  SmoothShape smooth_shape = SmoothShape::kCubic;  ///< kSmooth
   bool operator==(const Mix&) const = default;
 
   int samples() const;  ///< light samples per shading point and light
@@ -45,9 +48,6 @@ struct Mix {
 /// Reads the grammar of interface.md: strategy[:count] joined by `+`, then /combination.
 /// InvalidArgument names the word at fault.
 absl::StatusOr<Mix> parse_mix(std::string_view text);
-
-/// Unimplemented, naming the word, for a mix that parses but that this version cannot render.
-absl::Status check_supported(const Mix& mix);
 
 /// The normal form: counts and combination always written. parse_mix(label(m)) == m.
 std::string label(const Mix& mix);

@@ -16,7 +16,7 @@ double relative_density(double p, double largest) {
   return p / largest;
 }
 
-double largest_of(std::span<const int> counts, std::span<const double> pdfs) {
+double largest_of(std::span<const double> counts, std::span<const double> pdfs) {
   PENUMBRA_CHECK(counts.size() == pdfs.size());
   double largest = 0;
   for (size_t i = 0; i < pdfs.size(); ++i)
@@ -34,7 +34,7 @@ void normalise(std::span<double> weights) {
 
 }  // namespace
 
-void balance_weights(std::span<const int> counts, std::span<const double> pdfs,
+void balance_weights(std::span<const double> counts, std::span<const double> pdfs,
                      std::span<const double> smoothing, std::span<double> out) {
   PENUMBRA_CHECK(out.size() == pdfs.size() && (smoothing.empty() || smoothing.size() == pdfs.size()));
   const auto factor = [&](size_t i) { return smoothing.empty() ? 1.0 : smoothing[i]; };
@@ -54,7 +54,7 @@ void balance_weights(std::span<const int> counts, std::span<const double> pdfs,
   normalise(out);
 }
 
-void power_weights(std::span<const int> counts, std::span<const double> pdfs, std::span<double> out) {
+void power_weights(std::span<const double> counts, std::span<const double> pdfs, std::span<double> out) {
   PENUMBRA_CHECK(out.size() == pdfs.size());
   const double largest = largest_of(counts, pdfs);
   for (size_t i = 0; i < pdfs.size(); ++i) {
@@ -64,7 +64,7 @@ void power_weights(std::span<const int> counts, std::span<const double> pdfs, st
   normalise(out);
 }
 
-double inverse_sum(std::span<const int> counts, std::span<const double> pdfs) {
+double inverse_sum(std::span<const double> counts, std::span<const double> pdfs) {
   const double largest = largest_of(counts, pdfs);
   if (largest == 0) return std::numeric_limits<double>::infinity();
   if (std::isinf(largest)) return 0;

@@ -75,14 +75,18 @@ uint32_t permute(uint32_t i, uint32_t size, uint64_t seed) {
   return i < room ? i + rotation : i - room;
 }
 
-Vec2d correlated_multi_jitter(uint32_t stratum, uint32_t size, uint64_t seed) {
+Vec2d multi_jitter(uint32_t stratum, uint32_t size, uint64_t seed) {
   const uint32_t columns = static_cast<uint32_t>(std::sqrt(static_cast<double>(size)));
   const uint32_t rows = size / columns + (size % columns != 0);
-  const uint32_t column = permute(stratum % columns, columns, child_key(seed, 0));
-  const uint32_t row = permute(stratum / columns, rows, child_key(seed, 1));
+  // Which column a sample of a row takes, and which part of the column it is in, are drawn for each row and
+  // for each column apart. Permutations common to all of them (Kensler 2013) leave the errors of all cells of
+  // a row alike: for f = xy the variance then falls with the power −1.5 of the size, here with −2.
+  const uint32_t row = stratum / columns;
+  const uint32_t column = permute(stratum % columns, columns, child_key(child_key(seed, 0), row));
+  const uint32_t part = permute(row, rows, child_key(child_key(seed, 1), column));
   const uint64_t own = child_key(seed, uint64_t{4} + stratum);
   const double jx = static_cast<uint32_t>(own) * 0x1p-32, jy = (own >> 32) * 0x1p-32;
-  const double x = (column + (row + jx) / rows) / columns, y = (stratum + jy) / size;
+  const double x = (column + (part + jx) / rows) / columns, y = (stratum + jy) / size;
   return {std::min(x, kBelowOne), std::min(y, kBelowOne)};
 }
 

@@ -11,10 +11,10 @@ namespace penumbra {
 /// image of each i is uniform. `seed` (here and below): well mixed bits, as of child_key().
 uint32_t permute(uint32_t i, uint32_t size, uint64_t seed);
 
-/// Point `stratum` of `size` correlated multi-jittered points (Kensler 2013, §«arbitrary sizes»): one point
-/// in each of `size` rows, in each of about as many columns, and in each cell of a grid about as fine as a
+/// Point `stratum` of `size` multi-jittered points (Chiu, Shirley & Wang 1994), for any size: one point in
+/// each of `size` rows, in each of about as many columns, and in each cell of a grid about as fine as a
 /// square one. `stratum` numbers the rows: permute it first if the order of the samples matters.
-Vec2d correlated_multi_jitter(uint32_t stratum, uint32_t size, uint64_t seed);
+Vec2d multi_jitter(uint32_t stratum, uint32_t size, uint64_t seed);
 
 /// One of `size` jittered points of [0,1), in stratum `stratum`.
 double jitter(uint32_t stratum, uint32_t size, uint64_t seed);

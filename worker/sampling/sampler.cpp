@@ -22,8 +22,9 @@ uint64_t stream_key(uint64_t key, Use use, uint64_t a = 0, uint64_t b = 0) {
 /// different blocks of g neighbours, and the g passes of a block into different members of it. For every
 /// pass i -> block is a bijection, for every block p -> member is one: together one of all n·g.
 uint32_t nested_stratum(uint32_t p, uint32_t g, uint32_t i, uint32_t n, uint64_t seed) {
-  const uint32_t block = n == 1 ? 0 : permute(i, n, child_key(seed, 2 * uint64_t{p}));
-  const uint32_t member = g == 1 ? 0 : permute(p, g, child_key(seed, 2 * uint64_t{block} + 1));
+  const uint64_t own = ~seed;  // the pattern's children are of the seed itself
+  const uint32_t block = n == 1 ? 0 : permute(i, n, child_key(own, 2 * uint64_t{p}));
+  const uint32_t member = g == 1 ? 0 : permute(p, g, child_key(own, 2 * uint64_t{block} + 1));
   return block * g + member;
 }
 
@@ -54,7 +55,7 @@ Vec2d PassSampler::square(uint64_t stream, int i, int n) const {
       return {uniform(bits), uniform(mix64(bits ^ stream))};
     }
     case SamplerKind::kStratified:
-      return correlated_multi_jitter(nested_stratum(pass_in_group_, group_size_, i, n, stream), size, stream);
+      return multi_jitter(nested_stratum(pass_in_group_, group_size_, i, n, stream), size, stream);
     case SamplerKind::kSobol:
       return scrambled_sobol(index, stream);
   }

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "proto/status.h"
+#include "worker/strategies/smoothing.h"
 
 namespace penumbra {
 namespace {
@@ -12,41 +12,8 @@ constexpr size_t kNoLine = std::numeric_limits<size_t>::max();
 /// Streams of random numbers that belong to no single light.
 constexpr uint32_t kBsdfStream = 0xffffffff, kDrawStream = 0x80000000;
 
-bool is_black(const Rgb& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
-bool is_bsdf(const Strategy& s) { return std::holds_alternative<BsdfStrategy>(s); }
-
-/// The overload sets of strategy.h, asked through the variant. Each kind of strategy has one of the two.
-LightSample sample_point(const Strategy& strategy, const LightView& view, const Vec2d& u) {
-  return std::visit(
-      [&](const auto& s) -> LightSample {
-        if constexpr (requires { sample(s, view, u); }) return sample(s, view, u);
-        return {};
-      },
-      strategy);
-}
-double density_of(const Strategy& strategy, const LightView& view, const LightSample& at) {
-  return std::visit(
-      [&](const auto& s) -> double {
-        if constexpr (requires { pdf(s, view, at); }) return pdf(s, view, at);
-        return 0;
-      },
-      strategy);
-}
-LightLine choose_line(const Strategy& strategy, const LightView& view, double u) {
-  return std::visit(
-      [&](const auto& s) -> LightLine {
-        if constexpr (requires { choose(s, view, u); }) return choose(s, view, u);
-        return {};
-      },
-      strategy);
-}
-LightLine line_through(const Strategy& strategy, const LightView& view, const Vec3d& p) {
-  return std::visit(
-      [&](const auto& s) -> LightLine {
-        if constexpr (requires { through(s, view, p); }) return through(s, view, p);
-        return {};
-      },
-      strategy);
+bool is_black(const Rgb& c) {
+  return c.x == 0 && c.y == 0 && c.z == 0;
 }
 
 /// Samples that the mix expects of a slot at this light: the n_s of the balance heuristic.
@@ -65,16 +32,6 @@ Vec3f end_on_light(const LightPoint& at, const Vec3d& x) {
 }
 
 }  // namespace
-
-PreparedMix::PreparedMix(const Mix& mix, const LightSet& lights) : combination_(mix.combination) {
-  for (const StrategyCount& s : mix.strategies) {
-    counts_.push_back(s.count);
-    environment_.push_back(fit_environment(s));
-  }
-  fitted_.reserve(lights.area.size() * mix.strategies.size());
-  for (const AreaEmitter& emitter : lights.area)
-    for (const StrategyCount& s : mix.strategies) fitted_.push_back(fit(s, emitter));
-}
 
 Rgb DirectLight::estimate(const ShadingPoint& point, const PassSampler& sampler, int depth) {
   Rgb sum(0);
@@ -162,7 +119,7 @@ Rgb DirectLight::ask(const ShadingPoint& point, size_t light, double draws, bool
 void DirectLight::gather_bsdf(const Task& task) {
   const auto mine = [&](const BsdfHit& hit) { return hit.light == task.light; };
   for (const BsdfHit& hit : hits_)
-    if (mine(hit)) push(task, hit.sample, hit.slot, Sight::kClear, kNoLine, 0);
+    if (mine(hit)) push(task, hit.sample, hit.slot, Sight::kTraced, kNoLine, 0);
   std::erase_if(hits_, mine);
 }
 
@@ -198,7 +155,8 @@ void DirectLight::gather_lines(const Task& task, uint32_t stream, const PassSamp
       const Vec2d u = sampler.light(depth, stream, int(s), i, slot.count);
       const LightPoint at =
           sample_line(own_lines_.line(line), task.view.x(), own_lines_.visible(line), u.y);
-      push(task, towards(task.view, at), s, Sight::kClear, line, parameter_of(own_lines_.line(line), at.p));
+      push(task, towards(task.view, at), s, Sight::kNoOpaque, line,
+           parameter_of(own_lines_.line(line), at.p));
     }
   }
 }
@@ -214,8 +172,9 @@ void DirectLight::push(const Task& task, const LightSample& sample, size_t slot,
 void DirectLight::resolve(const Task& task) {
   const size_t slots = mix_.slots();
   const Combination how = mix_.combination();
-  // Only these two weigh with what lines can see from here; a line query per foreign candidate is the price.
-  const bool queries = how == Combination::kBalance || how == Combination::kPower;
+  // These weigh with what lines can see from here; a line query per foreign candidate is the price.
+  const bool queries =
+      how == Combination::kBalance || how == Combination::kPower || how == Combination::kSmooth;
   foreign_lines_.clear();
   foreign_.assign(candidates_.size() * slots, kNoLine);
   if (queries && task.view.is_area()) {
@@ -238,10 +197,18 @@ void DirectLight::densities(const Task& task, Candidate& c, double* row) {
   const size_t slots = mix_.slots();
   const size_t* foreign = &foreign_[size_t(row - densities_.data())];
   const Vec3d x = task.view.x();
+  const bool smooths = mix_.combination() == Combination::kSmooth && task.view.is_area();
+  if (smooths) c.smoothing = border_factor(mix_.smoothing(), task.view.area().shape, c.sample.at.p);
   for (size_t s = 0; s < slots; ++s) {
     const Strategy& strategy = task.slot(mix_, s).strategy;
     if (s == c.slot) {
-      row[s] = c.sample.at.pdf;
+      if (smooths && c.line != kNoLine)
+        c.smoothing *=
+            line_factor(mix_.smoothing(), own_lines_.line(c.line), own_lines_.visible(c.line), c.s);
+      // A line's own density on its visible part is larger than if nothing were hidden.
+      if (mix_.combination() == Combination::kFree && c.line != kNoLine)
+        c.visible = own_lines_.visible_measure(c.line);
+      row[s] = c.sample.at.pdf * c.visible;
     } else if (!is_line(strategy)) {
       if (mix_.combination() != Combination::kAverage) row[s] = density_of(strategy, task.view, c.sample);
     } else if (foreign[s] != kNoLine) {
@@ -249,9 +216,11 @@ void DirectLight::densities(const Task& task, Candidate& c, double* row) {
       const double at = parameter_of(line, c.sample.at.p);
       const bool seen = foreign_lines_.sees(foreign[s], at);
       if (seen) row[s] = pdf_line(line, x, at, foreign_lines_.visible_measure(foreign[s]));
+      if (smooths && line.scale > 0)
+        c.smoothing *= line_factor(mix_.smoothing(), line, foreign_lines_.visible(foreign[s]), at);
       if (c.sight == Sight::kUnknown) {
         // The line through the point knows whether the point is visible: no shadow ray.
-        c.sight = Sight::kClear;
+        c.sight = Sight::kNoOpaque;
         if (!seen) c.f = Rgb(0);
       }
     } else if (mix_.combination() == Combination::kFree) {
@@ -261,8 +230,7 @@ void DirectLight::densities(const Task& task, Candidate& c, double* row) {
   }
   if (c.sight == Sight::kUnknown) {
     if (!clear(task, c.sample)) c.f = Rgb(0);
-  } else if (task.view.is_area() && scene_.geometry.has_alpha() && !is_black(c.f) &&
-             !is_bsdf(task.slot(mix_, c.slot).strategy)) {
+  } else if (c.sight == Sight::kNoOpaque && scene_.geometry.has_alpha() && !is_black(c.f)) {
     const Vec3f end = end_on_light(c.sample.at, x);
     if (scene_.geometry.occluded_by_alpha(task.view.point().origin(c.sample.wi), end, counters_)) c.f = Rgb(0);
   }
@@ -281,54 +249,48 @@ bool DirectLight::clear(const Task& task, const LightSample& sample) {
   return hit && hit->id.instance == kNone && hit->id.mesh == task.view.area().mesh;
 }
 
+void DirectLight::start_combiner(const Task& task) {
+  expected_.clear();
+  line_slots_.clear();
+  for (size_t s = 0; s < mix_.slots(); ++s) {
+    const PreparedMix::Slot slot = task.slot(mix_, s);
+    expected_.push_back(expected_count(slot, task.draws));
+    line_slots_.push_back(is_line(slot.strategy));
+  }
+  combiner_.start(mix_.combination(), expected_, line_slots_);
+}
+
+Found DirectLight::found(size_t candidate, size_t slot) const {
+  const Candidate& c = candidates_[candidate];
+  const std::span<const double> row(&densities_[candidate * mix_.slots()], mix_.slots());
+  return {slot, slot == c.slot ? c.sample.at.pdf : row[slot], c.visible, c.smoothing, row};
+}
+
 /// Estimator of one light: Σ over candidates of weight × f / (n p), with n p of the strategy that found
 /// it. Veach & Guibas 1995; design §6.
-Rgb DirectLight::combine(const Task& task) const {
-  const size_t slots = mix_.slots();
+Rgb DirectLight::combine(const Task& task) {
+  start_combiner(task);
   Rgb sum(0);
   for (size_t c = 0; c < candidates_.size(); ++c) {
     const Candidate& candidate = candidates_[c];
-    if (is_black(candidate.f)) continue;
-    const double* row = &densities_[c * slots];
-    const PreparedMix::Slot own = task.slot(mix_, candidate.slot);
-    const double own_density = expected_count(own, task.draws) * row[candidate.slot];
-    double scale = 0;
-    switch (mix_.combination()) {
-      case Combination::kAverage:
-        scale = 1 / (own_density * double(slots));
-        break;
-      case Combination::kPower: {
-        double squares = 0;
-        for (size_t s = 0; s < slots; ++s) {
-          const double ratio = expected_count(task.slot(mix_, s), task.draws) * row[s] / own_density;
-          squares += ratio * ratio;
-        }
-        scale = 1 / (own_density * squares);
-        break;
-      }
-      case Combination::kFree: {
-        // Design §5.1: weights from the densities as if nothing were hidden. A line's own density on
-        // its visible part is larger than that by 1 / (visible measure).
-        const double visible = candidate.line == kNoLine ? 1 : own_lines_.visible_measure(candidate.line);
-        double total = 0;
-        for (size_t s = 0; s < slots; ++s)
-          total += expected_count(task.slot(mix_, s), task.draws) * row[s] * (s == candidate.slot ? visible : 1);
-        scale = visible / total;
-        break;
-      }
-      case Combination::kSmooth:
-        PENUMBRA_CHECK(!"a combination that no worker has; the client and the server refuse it");
-        break;
-      case Combination::kBalance: {
-        double total = 0;
-        for (size_t s = 0; s < slots; ++s) total += expected_count(task.slot(mix_, s), task.draws) * row[s];
-        scale = 1 / total;
-        break;
-      }
-    }
-    sum += candidate.f * float(scale);
+    if (!is_black(candidate.f)) sum += candidate.f * float(combiner_.scale(found(c, candidate.slot)));
   }
   return sum;
+}
+
+DirectLight::Integrand DirectLight::integrand(const ShadingPoint& point, size_t area_emitter,
+                                              const Vec3d& on_light) {
+  const AreaEmitter& emitter = scene_.lights.area[area_emitter];
+  const LightView view(point, emitter);
+  const Task task{view, area_emitter, 1};
+  const LightSample sample = towards(view, {on_light, emission_normal(emitter.shape, on_light), 0});
+  candidates_.assign(1, {sample, point.scatter(sample.wi) * sample.radiance, mix_.slots(), kNoLine});
+  own_lines_.clear();
+  resolve(task);
+  start_combiner(task);
+  Integrand out{candidates_[0].f, candidates_[0].smoothing, densities_, {}};
+  for (size_t s = 0; s < mix_.slots(); ++s) out.weights.push_back(combiner_.weight(found(0, s)));
+  return out;
 }
 
 Rgb DirectLight::delta(const ShadingPoint& point, const DeltaEmitter& emitter) {

@@ -2,38 +2,16 @@
 // Direct light at a shading point: one loop over all strategies of a mix, whatever they are.
 #include <vector>
 
-#include "proto/mix.h"
 #include "worker/geometry/geometry.h"
 #include "worker/sampling/sampler.h"
+#include "worker/strategies/combination.h"
 #include "worker/strategies/light_set.h"
 #include "worker/strategies/line_batch.h"
+#include "worker/strategies/prepared_mix.h"
 #include "worker/strategies/shading_point.h"
 #include "worker/strategies/strategy.h"
 
 namespace penumbra {
-
-/// A mix made ready for a scene's lights: what each of its strategies is on each of them.
-class PreparedMix {
- public:
-  PreparedMix(const Mix& mix, const LightSet& lights);
-
-  struct Slot {
-    const Strategy& strategy;
-    int count;
-  };
-  size_t slots() const { return counts_.size(); }
-  Slot slot(size_t area_emitter, size_t s) const {
-    return {fitted_[area_emitter * slots() + s], counts_[s]};
-  }
-  Slot environment_slot(size_t s) const { return {environment_[s], counts_[s]}; }
-  Combination combination() const { return combination_; }
-
- private:
-  std::vector<Strategy> fitted_;  ///< row per area emitter
-  std::vector<Strategy> environment_;
-  std::vector<int> counts_;
-  Combination combination_;
-};
 
 /// What the loop needs of the scene.
 struct Surroundings {
@@ -51,8 +29,19 @@ class DirectLight {
   /// Outgoing radiance at the point due to all lights; `depth` is the vertex's place on the path.
   Rgb estimate(const ShadingPoint& point, const PassSampler& sampler, int depth);
 
+  /// What the mix makes of one point of an area light, whichever strategy may find it; for `converge
+  /// --integrand`. A row per slot: the density that the weights are made of (sr⁻¹ at x), and the weight. The
+  /// weights sum to 1 unless no strategy can find the point. f is 0 where the point is hidden.
+  struct Integrand {
+    Rgb f{0};  ///< BSDF × cosine × radiance × visibility
+    double smoothing = 1;
+    std::vector<double> densities, weights;
+  };
+  Integrand integrand(const ShadingPoint& point, size_t area_emitter, const Vec3d& on_light);
+
  private:
-  enum class Sight { kClear, kUnknown };
+  /// What is known of the way to a candidate: a ray has gone it; no opaque surface is in it; nothing.
+  enum class Sight { kTraced, kNoOpaque, kUnknown };
   /// A direction that some strategy found, on its way to its weight.
   struct Candidate {
     LightSample sample;
@@ -61,6 +50,7 @@ class DirectLight {
     size_t line = 0;    ///< of its own line in the batch, if its strategy is a line
     double s = 0;       ///< where on that line
     Sight sight = Sight::kUnknown;
+    double visible = 1, smoothing = 1;  ///< see Found
   };
   struct BsdfHit {
     size_t light = 0;   ///< area emitters first, then environments
@@ -91,7 +81,9 @@ class DirectLight {
   void resolve(const Task& task);
   void densities(const Task& task, Candidate& candidate, double* row);
   bool clear(const Task& task, const LightSample& sample);
-  Rgb combine(const Task& task) const;
+  Rgb combine(const Task& task);
+  void start_combiner(const Task& task);
+  Found found(size_t candidate, size_t slot) const;
 
   Surroundings scene_;
   const PreparedMix& mix_;
@@ -102,6 +94,9 @@ class DirectLight {
   LineBatch own_lines_, foreign_lines_;
   std::vector<size_t> foreign_;     ///< row per candidate, a handle per slot
   std::vector<double> densities_;   ///< row per candidate, a density per slot
+  std::vector<double> expected_;    ///< samples per slot
+  std::vector<bool> line_slots_;    ///< whether it is a line strategy
+  Combiner combiner_;
 };
 
 }  // namespace penumbra

@@ -49,13 +49,20 @@ Strategy fit_line_solid_angle(bool along_u, const LightShape& shape) {
 Strategy fit(const StrategyCount& wanted, const AreaEmitter& emitter) {
   const LightShape& shape = emitter.shape;
   switch (wanted.kind) {
-    case StrategyKind::kBsdf: return emitter.invisible ? fit_point(shape) : Strategy{BsdfStrategy{}};
-    case StrategyKind::kArea: return AreaStrategy{};
-    case StrategyKind::kSolidAngle: return fit_point(shape);
-    case StrategyKind::kLineArea: return fit_line_area(wanted.angle_degrees * kDegree, shape);
-    case StrategyKind::kLineSolidAngleU: return fit_line_solid_angle(true, shape);
-    case StrategyKind::kLineSolidAngleV: return fit_line_solid_angle(false, shape);
-    case StrategyKind::kLineAnalytic: break;
+    case StrategyKind::kBsdf:
+      return emitter.invisible ? fit_point(shape) : Strategy{BsdfStrategy{}};
+    case StrategyKind::kArea:
+      return AreaStrategy{};
+    case StrategyKind::kSolidAngle:
+      return fit_point(shape);
+    case StrategyKind::kLineArea:
+      return fit_line_area(wanted.angle_degrees * kDegree, shape);
+    case StrategyKind::kLineSolidAngleU:
+      return fit_line_solid_angle(true, shape);
+    case StrategyKind::kLineSolidAngleV:
+      return fit_line_solid_angle(false, shape);
+    case StrategyKind::kLineAnalytic:
+      break;
   }
   PENUMBRA_CHECK(!"a strategy that no worker has; the client and the server refuse it");
   return BsdfStrategy{};
@@ -85,6 +92,46 @@ std::string name_of(const Strategy& strategy) {
 bool is_line(const Strategy& strategy) {
   return std::holds_alternative<LineAreaStrategy>(strategy) ||
          std::holds_alternative<LineSolidAngleStrategy>(strategy);
+}
+
+bool is_bsdf(const Strategy& strategy) {
+  return std::holds_alternative<BsdfStrategy>(strategy);
+}
+
+LightSample sample_point(const Strategy& strategy, const LightView& view, const Vec2d& u) {
+  return std::visit(
+      [&](const auto& s) -> LightSample {
+        if constexpr (requires { sample(s, view, u); }) return sample(s, view, u);
+        return {};
+      },
+      strategy);
+}
+
+double density_of(const Strategy& strategy, const LightView& view, const LightSample& at) {
+  return std::visit(
+      [&](const auto& s) -> double {
+        if constexpr (requires { pdf(s, view, at); }) return pdf(s, view, at);
+        return 0;
+      },
+      strategy);
+}
+
+LightLine choose_line(const Strategy& strategy, const LightView& view, double u) {
+  return std::visit(
+      [&](const auto& s) -> LightLine {
+        if constexpr (requires { choose(s, view, u); }) return choose(s, view, u);
+        return {};
+      },
+      strategy);
+}
+
+LightLine line_through(const Strategy& strategy, const LightView& view, const Vec3d& p) {
+  return std::visit(
+      [&](const auto& s) -> LightLine {
+        if constexpr (requires { through(s, view, p); }) return through(s, view, p);
+        return {};
+      },
+      strategy);
 }
 
 LightSample towards(const LightView& view, const LightPoint& at) {

@@ -30,7 +30,9 @@ struct LineAreaStrategy {
   ParallelChords chords;
 };
 /// `line-sa@u`, `line-sa@v`.
-struct LineSolidAngleStrategy { bool along_u = true; };
+struct LineSolidAngleStrategy {
+  bool along_u = true;
+};
 
 using Strategy = std::variant<BsdfStrategy, AreaStrategy, SolidAngleStrategy, EnvironmentStrategy,
                               LineAreaStrategy, LineSolidAngleStrategy>;
@@ -41,6 +43,7 @@ Strategy fit_environment(const StrategyCount& wanted);
 /// `sa`, for messages: the strategy in the words of the mix grammar.
 std::string name_of(const Strategy& strategy);
 bool is_line(const Strategy& strategy);
+bool is_bsdf(const Strategy& strategy);
 
 /// One light as it is seen from one shading point; what strategies share is made once, when first asked.
 class LightView {
@@ -91,6 +94,12 @@ LightLine choose(const LineAreaStrategy& strategy, const LightView& view, double
 LightLine choose(const LineSolidAngleStrategy& strategy, const LightView& view, double u);
 LightLine through(const LineAreaStrategy& strategy, const LightView& view, const Vec3d& p);
 LightLine through(const LineSolidAngleStrategy& strategy, const LightView& view, const Vec3d& p);
+
+// The same, asked through the variant. A strategy of the other kind gives no sample, density 0, no line.
+LightSample sample_point(const Strategy& strategy, const LightView& view, const Vec2d& u);
+double density_of(const Strategy& strategy, const LightView& view, const LightSample& at);
+LightLine choose_line(const Strategy& strategy, const LightView& view, double u);
+LightLine line_through(const Strategy& strategy, const LightView& view, const Vec3d& p);
 
 /// A point of the view's area light as a sample (direction, radiance).
 LightSample towards(const LightView& view, const LightPoint& at);

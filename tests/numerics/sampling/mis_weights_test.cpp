@@ -18,8 +18,7 @@ TEST(Battery, F7MisWeights) {
   for (const Row& row : read_battery("f7_mis_weights")) {
     const int k = row.integer("k");
     ASSERT_LE(k, kMostStrategies);
-    std::vector<int> counts;
-    std::vector<double> pdfs, smoothing, balance(k, -1), power(k, -1);
+    std::vector<double> counts, pdfs, smoothing, balance(k, -1), power(k, -1);
     for (int i = 0; i < k; ++i) {
       counts.push_back(row.integer(kCount[i]));
       pdfs.push_back(row.single(kPdf[i]));

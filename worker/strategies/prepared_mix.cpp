@@ -1,0 +1,16 @@
+#include "worker/strategies/prepared_mix.h"
+
+namespace penumbra {
+
+PreparedMix::PreparedMix(const Mix& mix, const LightSet& lights)
+    : combination_(mix.combination), smoothing_{mix.smooth_shape, mix.smooth_width} {
+  for (const StrategyCount& s : mix.strategies) {
+    counts_.push_back(s.count);
+    environment_.push_back(fit_environment(s));
+  }
+  fitted_.reserve(lights.area.size() * mix.strategies.size());
+  for (const AreaEmitter& emitter : lights.area)
+    for (const StrategyCount& s : mix.strategies) fitted_.push_back(fit(s, emitter));
+}
+
+}  // namespace penumbra

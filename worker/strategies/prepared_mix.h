@@ -1,0 +1,34 @@
+#pragma once
+// A mix made ready for a scene's lights: what each of its strategies is on each of them.
+#include <vector>
+
+#include "proto/mix.h"
+#include "worker/strategies/light_set.h"
+#include "worker/strategies/smoothing.h"
+#include "worker/strategies/strategy.h"
+
+namespace penumbra {
+
+class PreparedMix {
+ public:
+  PreparedMix(const Mix& mix, const LightSet& lights);
+
+  struct Slot {
+    const Strategy& strategy;
+    int count;
+  };
+  size_t slots() const { return counts_.size(); }
+  Slot slot(size_t area_emitter, size_t s) const { return {fitted_[area_emitter * slots() + s], counts_[s]}; }
+  Slot environment_slot(size_t s) const { return {environment_[s], counts_[s]}; }
+  Combination combination() const { return combination_; }
+  const Smoothing& smoothing() const { return smoothing_; }
+
+ private:
+  std::vector<Strategy> fitted_;  ///< row per area emitter
+  std::vector<Strategy> environment_;
+  std::vector<int> counts_;
+  Combination combination_;
+  Smoothing smoothing_;
+};
+
+}  // namespace penumbra
