@@ -30,8 +30,12 @@ TEST(LightPixels, AreThoseWhoseFilterMeetsTheProjection) {
   for (int y = 0; y < 16; ++y)
     for (int x = 0; x < 16; ++x) {
       const bool inside = x >= 8 && x < 11 && y >= 5 && y < 8, near = x >= 7 && x < 12 && y >= 4 && y < 9;
-      if (inside) EXPECT_EQ(seen[size_t(y * 16 + x)], 1) << x << ' ' << y;
-      if (!near) EXPECT_EQ(seen[size_t(y * 16 + x)], 0) << x << ' ' << y;
+      if (inside) {
+        EXPECT_EQ(seen[size_t(y * 16 + x)], 1) << x << ' ' << y;
+      }
+      if (!near) {
+        EXPECT_EQ(seen[size_t(y * 16 + x)], 0) << x << ' ' << y;
+      }
     }
 }
 
