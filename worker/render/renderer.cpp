@@ -9,6 +9,7 @@
 #include "proto/status.h"
 #include "scenes/needs.h"
 #include "scenes/parser.h"
+#include "worker/render/render_space.h"
 #include "worker/render/scene_builder.h"
 #include "worker/strategies/strategy.h"
 
@@ -48,7 +49,10 @@ absl::StatusOr<ScenePtr> build_scene(const SceneDescription& description, const 
   report.needs = needs_of(description);
   report.warnings = description.warnings;
   for (std::string& warning : unsupported(description)) report.warnings.push_back(std::move(warning));
-  ASSIGN_OR_RETURN(ScenePtr scene, RenderSceneBuilder(description, files, options, report.warnings).build());
+  ASSIGN_OR_RETURN(const std::optional<Vec3d> origin, distant_origin(description, files));
+  const SceneDescription moved = origin ? moved_to(*origin, description) : SceneDescription();
+  RenderSceneBuilder builder(origin ? moved : description, files, options, report.warnings);
+  ASSIGN_OR_RETURN(ScenePtr scene, builder.build());
   if (options.strict && !report.warnings.empty()) return invalid_input("--strict: {}", report.warnings.front());
   report.build_seconds = seconds_since(start);
   return scene;

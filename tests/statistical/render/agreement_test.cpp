@@ -2,43 +2,18 @@
 // roads, so their block means must agree (z-tests, Šidák over all pairs and blocks).
 #include <gtest/gtest.h>
 
-#include "film/statistics.h"
-#include "tests/support/render.h"
+#include "tests/statistical/render/agreement.h"
 
 namespace penumbra {
 namespace {
 
-constexpr int kWidth = 64, kHeight = 48;
-
-/// Renders the mixes and z-tests all pairs; prints one line per mix.
 void expect_agreement(const ScenePtr& scene, const std::vector<std::string>& mixes, int64_t passes,
                       SamplerKind sampler = SamplerKind::kIndependent, int64_t group = 1) {
-  ASSERT_TRUE(scene);
-  JobSpec spec = test::job(kWidth, kHeight, mixes, passes);
-  spec.sampler = sampler;
-  spec.max_depth = 3;
-  const test::Rendered rendered = test::render(*scene, spec, group);
-  std::vector<std::vector<Block>> all;
-  for (size_t m = 0; m < mixes.size(); ++m) {
-    EXPECT_EQ(rendered.costs[m].non_finite, 0u) << mixes[m];
-    all.push_back(blocks(rendered.images[m], spec.crop));
-  }
-  std::vector<double> a, b, variance;
-  std::vector<std::string> names;
-  for (size_t i = 0; i < all.size(); ++i)
-    for (size_t j = i + 1; j < all.size(); ++j)
-      for (size_t k = 0; k < all[i].size(); ++k)
-        for (int c = 0; c < 3; ++c) {
-          a.push_back(all[i][k].mean[c]);
-          b.push_back(all[j][k].mean[c]);
-          variance.push_back(all[i][k].variance[c] + all[j][k].variance[c]);
-          names.push_back(mixes[i] + " against " + mixes[j] + ", block " + std::to_string(k));
-        }
-  const ZTest z = z_test(a, b, variance, 0.001);
-  ASSERT_GT(z.compared, 0);
-  EXPECT_TRUE(z.passes()) << z.rejected << " of " << z.compared << " rejected; worst |z| " << z.largest << " (limit "
-                          << z.threshold << "): " << names[size_t(z.worst)] << ": " << a[size_t(z.worst)] << " and "
-                          << b[size_t(z.worst)];
+  test::AgreementSpec how;
+  how.passes = passes;
+  how.group = group;
+  how.sampler = sampler;
+  test::expect_agreement(scene, mixes, how);
 }
 
 const std::string kHead = R"(LookAt 0 3 6  0 0.6 0  0 1 0

@@ -1,0 +1,110 @@
+// The gallery's hard cases end to end: no value that is not finite, every strategy agrees with every other,
+// and no light passes through a closed box.
+//
+// A z-test needs means that a few thousand samples can estimate. Where a strategy alone has no finite
+// variance
+// (`area` at a light that x touches: ∫ (cosθ cosθ_l / r²)² dA over a pixel diverges) or never meets the light
+// (`bsdf` and a light of 1e-12 sr), it stands in a balanced mix with one that has: its samples and densities
+// enter the estimate all the same.
+#include <gtest/gtest.h>
+
+#include "tests/statistical/render/agreement.h"
+
+namespace penumbra {
+namespace {
+
+ScenePtr hard_scene(const std::string& name) {
+  return test::load(PENUMBRA_SOURCE_DIR "/scenes/gallery/hard/" + name + ".pbrt");
+}
+
+/// One of each kind, alone and combined.
+const std::vector<std::string> kEveryStrategy = {"bsdf:4",
+                                                 "area:2",
+                                                 "sa:2",
+                                                 "line-area@0:1",
+                                                 "line-area@90:1",
+                                                 "line-area@37:1",
+                                                 "line-sa@u:1",
+                                                 "line-sa@v:1",
+                                                 "bsdf:1+sa:1",
+                                                 "area:1+line-sa@v:1",
+                                                 "bsdf:1+line-sa@u:1/power",
+                                                 "sa:1+line-area@60:1/free",
+                                                 "line-area@0:1+line-sa@v:1/average"};
+
+test::AgreementSpec small(int64_t passes) {
+  test::AgreementSpec how;
+  how.width = 48;
+  how.height = 36;
+  how.passes = passes;
+  return how;
+}
+
+TEST(HardScenes, Slivers) {
+  test::expect_agreement(hard_scene("slivers"), kEveryStrategy, small(32));
+}
+
+TEST(HardScenes, CoplanarStacks) {
+  test::expect_agreement(hard_scene("stacks"), kEveryStrategy, small(32));
+}
+
+TEST(HardScenes, LightAtAGrazingAngle) {
+  std::vector<std::string> mixes = kEveryStrategy;
+  mixes[0] = "bsdf:3+sa:1";  // a light under 1e-3 rad is not met by chance
+  test::expect_agreement(hard_scene("grazing"), mixes, small(32));
+}
+
+TEST(HardScenes, ReceiverTouchesTheLight) {
+  test::expect_agreement(hard_scene("touching"),
+                         {"bsdf:4", "sa:2", "line-sa@u:1", "line-sa@v:1", "area:1+sa:1", "bsdf:1+sa:1",
+                          "sa:1+line-area@0:1", "sa:1+line-area@90:1", "sa:1+line-area@37:1",
+                          "bsdf:1+line-sa@v:1", "sa:1+line-sa@u:1/free", "bsdf:1+line-sa@u:1/power"},
+                         small(32));
+}
+
+TEST(HardScenes, LightInTheReceiversPlane) {
+  test::expect_agreement(hard_scene("in_plane"), kEveryStrategy, small(32));
+}
+
+TEST(HardScenes, TinyLight) {
+  test::expect_agreement(
+      hard_scene("tiny"),
+      {"area:1", "sa:1", "line-area@0:1", "line-area@90:1", "line-area@37:1", "line-sa@u:1", "line-sa@v:1",
+       "bsdf:1+sa:1", "bsdf:1+line-sa@u:1", "area:1+line-sa@v:1/power", "bsdf:1+line-area@0:1/free",
+       "line-area@0:1+line-sa@v:1/average"},
+      small(16));
+}
+
+TEST(HardScenes, MillimetresAThousandKilometresAway) {
+  test::expect_agreement(hard_scene("far"), kEveryStrategy, small(32));
+}
+
+TEST(HardScenes, TenThousandSlats) {
+  test::AgreementSpec how = small(4);
+  how.width = 32;
+  how.height = 24;
+  test::expect_agreement(hard_scene("blinds"),
+                         {"bsdf:4", "area:4", "sa:4", "line-area@0:1", "line-area@90:1", "line-sa@u:1",
+                          "line-sa@v:1", "bsdf:1+line-sa@v:1"},
+                         how);
+}
+
+TEST(HardScenes, AClosedBoxIsBlack) {
+  const ScenePtr scene = hard_scene("closed_box");
+  ASSERT_TRUE(scene);
+  for (const SamplerKind sampler :
+       {SamplerKind::kIndependent, SamplerKind::kStratified, SamplerKind::kSobol}) {
+    JobSpec spec = test::job(64, 48, kEveryStrategy, 8);
+    spec.sampler = sampler;
+    const test::Rendered rendered = test::render(*scene, spec, 8);
+    for (size_t m = 0; m < spec.mixes.size(); ++m) {
+      EXPECT_EQ(rendered.costs[m].non_finite, 0u) << kEveryStrategy[m];
+      float brightest = 0;
+      for (const float value : rendered.images[m].rgb) brightest = std::max(brightest, value);
+      EXPECT_EQ(brightest, 0) << kEveryStrategy[m] << " lets light into the box";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace penumbra
