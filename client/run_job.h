@@ -23,9 +23,15 @@ struct FinishedRun {
 struct Backend {
   std::optional<LocalCluster> cluster;
   std::optional<Server> server;
+
+  /// Looks after the local cluster's processes, if there is one.
+  absl::Status tend() { return cluster ? cluster->tend() : absl::OkStatus(); }
 };
 absl::StatusOr<std::unique_ptr<Backend>> open_backend(const ServerOptions& server,
                                                       const ClusterOptions& cluster);
+/// A local cluster of another build (its folder, with bin/); empty: of this one.
+absl::StatusOr<std::unique_ptr<Backend>> open_local(const ClusterOptions& cluster,
+                                                    const std::string& programs);
 
 /// Uploads, submits, follows, fetches, writes. When the token stops, the job is cancelled and what there
 /// is of it is written, marked partial. A job that failed is an error after its images are written.

@@ -35,12 +35,26 @@ Json timeline_json(const MixSummary& mix, const MixRecord& record) {
   return timeline;
 }
 
+Json calibration_json(const Calibration& c) {
+  return {{"units", c.units},
+          {"seconds", c.seconds},
+          {"seconds_per_unit", c.units > 0 ? Json(c.seconds / static_cast<double>(c.units)) : Json(nullptr)}};
+}
+
+/// Six digits: the blocks are many, and their noise is far larger.
+Json blocks_json(const ErrorBlocks& blocks) {
+  Json relmse = Json::array();
+  for (const double value : blocks.relmse) relmse.push_back(std::stod(fmt::format("{:.6g}", value)));
+  return {{"edge", blocks.edge}, {"relmse", relmse}};
+}
+
 Json mix_json(const RunSummary& summary, const MixSummary& mix, const MixRecord& record) {
   Json regions = Json::object();
   for (const auto& [name, figures] : record.regions)
     regions[name] = {{"rect", to_json(figures.region)},
                      {"relmse", figures.relmse},
                      {"relmse_ci", interval_json(figures.relmse_ci)},
+                     {"trimmed_relmse", figures.trimmed_relmse},
                      {"mse", figures.mse},
                      {"reference_floor", or_null(figures.reference_floor)}};
   const std::optional<ErrorFigures>& e = record.error;
@@ -62,7 +76,15 @@ Json mix_json(const RunSummary& summary, const MixSummary& mix, const MixRecord&
           {"timeline", timeline_json(mix, record)},
           {"planned_passes", mix.planned_passes},
           {"pilot_cpu_seconds", mix.pilot_cpu_seconds},
-          {"substitutions", mix.substitutions}};
+          {"substitutions", mix.substitutions},
+          {"calibration", calibration_json(mix.calibration)},
+          {"error_blocks", e ? blocks_json(e->blocks) : Json(nullptr)}};
+}
+
+Calibration total_calibration(const RunSummary& summary) {
+  Calibration total;
+  for (const MixSummary& mix : summary.mixes) total += mix.calibration;
+  return total;
 }
 
 Json needs_json(const RunSummary& summary) {
@@ -78,7 +100,8 @@ Json tiles_json(const RunSummary& summary) {
                      {"mix", row.mix},
                      {"passes", row.passes},
                      {"cpu_seconds", row.cpu_seconds},
-                     {"worker", row.worker}});
+                     {"worker", row.worker},
+                     {"calibration", calibration_json(row.calibration)}});
   return tiles;
 }
 
@@ -124,6 +147,7 @@ Json run_json(const RunRecord& run) {
           {"retries", s.status.retries},
           {"scheduler", {{"cpu_seconds", run.scheduler_cpu_seconds}}},
           {"warnings", s.load.warnings},
+          {"calibration", calibration_json(total_calibration(s))},
           {"plan", plan_json(s)},
           {"spec", to_json(s.spec)}};
 }

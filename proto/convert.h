@@ -14,8 +14,10 @@
 namespace penumbra {
 
 v1::PixelRect to_proto(const PixelRect& rect);
+v1::Probe to_proto(const Probe& probe);
 v1::JobSpec to_proto(const JobSpec& spec);
 v1::TileTask to_proto(const TileTask& task);
+v1::Calibration to_proto(const Calibration& calibration);
 v1::MixCost to_proto(const MixCost& cost);
 v1::LoadReport to_proto(const LoadReport& report);
 v1::WorkerInfo to_proto(const WorkerInfo& worker);
@@ -29,8 +31,10 @@ v1::SyncRequest to_proto(const WorkerState& state);
 v1::SyncResponse to_proto(const DesiredState& state);
 
 absl::StatusOr<PixelRect> from_proto(const v1::PixelRect& rect);
+absl::StatusOr<Probe> from_proto(const v1::Probe& probe);
 absl::StatusOr<JobSpec> from_proto(const v1::JobSpec& spec);
 absl::StatusOr<TileTask> from_proto(const v1::TileTask& task);
+absl::StatusOr<Calibration> from_proto(const v1::Calibration& calibration);
 absl::StatusOr<MixCost> from_proto(const v1::MixCost& cost);
 absl::StatusOr<LoadReport> from_proto(const v1::LoadReport& report);
 absl::StatusOr<WorkerInfo> from_proto(const v1::WorkerInfo& worker);

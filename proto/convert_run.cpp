@@ -66,6 +66,18 @@ static v1::FailureKind to_proto(FailureKind kind) {
   std::abort();
 }
 
+v1::Calibration to_proto(const Calibration& calibration) {
+  v1::Calibration out;
+  out.set_units(calibration.units);
+  out.set_seconds(calibration.seconds);
+  return out;
+}
+
+absl::StatusOr<Calibration> from_proto(const v1::Calibration& message) {
+  RETURN_IF_ERROR(check_amount("calibration.seconds", message.seconds()));
+  return Calibration{message.units(), message.seconds()};
+}
+
 v1::MixSummary to_proto(const MixSummary& mix) {
   v1::MixSummary out;
   out.set_mix(label(mix.mix));
@@ -76,6 +88,7 @@ v1::MixSummary to_proto(const MixSummary& mix) {
   out.set_line_queries(mix.line_queries);
   out.set_non_finite(mix.non_finite);
   out.set_pilot_cpu_seconds(mix.pilot_cpu_seconds);
+  *out.mutable_calibration() = to_proto(mix.calibration);
   for (const std::string& text : mix.substitutions) out.add_substitutions(text);
   for (const Checkpoint& checkpoint : mix.checkpoints) {
     v1::MixSummary::Checkpoint* added = out.add_checkpoints();
@@ -99,6 +112,7 @@ absl::StatusOr<MixSummary> from_proto(const v1::MixSummary& message) {
   mix.line_queries = message.line_queries();
   mix.non_finite = message.non_finite();
   mix.pilot_cpu_seconds = message.pilot_cpu_seconds();
+  ASSIGN_OR_RETURN(mix.calibration, from_proto(message.calibration()));
   ASSIGN_OR_RETURN(mix.substitutions, texts_from_proto("substitutions", message.substitutions()));
   for (const v1::MixSummary::Checkpoint& checkpoint : message.checkpoints()) {
     RETURN_IF_ERROR(check_range<int64_t>("checkpoints.passes", checkpoint.passes(), 0, kMostPasses));
@@ -115,6 +129,7 @@ v1::TileRow to_proto(const TileRow& row) {
   out.set_passes(row.passes);
   out.set_cpu_seconds(row.cpu_seconds);
   out.set_worker(row.worker);
+  *out.mutable_calibration() = to_proto(row.calibration);
   return out;
 }
 
@@ -124,6 +139,7 @@ absl::StatusOr<TileRow> from_proto(const v1::TileRow& message) {
   RETURN_IF_ERROR(check_range<int64_t>("tiles.passes", message.passes(), 0, kMostPasses));
   RETURN_IF_ERROR(check_amount("tiles.cpu_seconds", message.cpu_seconds()));
   RETURN_IF_ERROR(check_text("tiles.worker", message.worker()));
+  ASSIGN_OR_RETURN(row.calibration, from_proto(message.calibration()));
   row.mix = message.mix();
   row.passes = message.passes();
   row.cpu_seconds = message.cpu_seconds();
@@ -139,6 +155,7 @@ v1::MixCost to_proto(const MixCost& cost) {
   out.set_line_queries(cost.line_queries);
   out.set_non_finite(cost.non_finite);
   out.set_relative_variance(cost.relative_variance);
+  *out.mutable_calibration() = to_proto(cost.calibration);
   return out;
 }
 
@@ -147,6 +164,7 @@ absl::StatusOr<MixCost> from_proto(const v1::MixCost& message) {
   RETURN_IF_ERROR(check_amount("costs.cpu_seconds", message.cpu_seconds()));
   RETURN_IF_ERROR(check_amount("costs.relative_variance", message.relative_variance()));
   MixCost cost;
+  ASSIGN_OR_RETURN(cost.calibration, from_proto(message.calibration()));
   cost.passes = message.passes();
   cost.cpu_seconds = message.cpu_seconds();
   cost.rays = message.rays();

@@ -41,6 +41,25 @@ constexpr int kMostTile = 4096;
 constexpr int kMostDepth = 1024;
 constexpr int kMostCameraGrid = 1024;
 
+/// A job that looks into the estimator instead of making a picture (`converge`).
+struct Probe {
+  enum class Kind {
+    /// The picture's pixels with their camera samples at their centres, every pass an independent group: what
+    /// varies between passes is the light samples' own doing.
+    kVariance,
+    /// One pixel, one light: pixel (i,j) of the frame is the point u = (i + 1/2)/width, v = (j + 1/2)/height
+    /// of that light, its value w·f/p of one strategy of the mix.
+    kIntegrand,
+  };
+  Kind kind = Kind::kVariance;
+  // For kIntegrand:
+  int camera_width = 0, camera_height = 0;  ///< of the camera's image
+  int x = 0, y = 0;                         ///< the pixel that is looked at
+  int light = 0;                            ///< the area light, in the scene's order
+  std::vector<int> slots;                   ///< one per mix: which of its strategies
+  bool operator==(const Probe&) const = default;
+};
+
 /// Everything that decides a job's pixels, given the bundle's bytes.
 struct JobSpec {
   std::string scene;          ///< absolute path on the client's machine, for people
@@ -60,6 +79,7 @@ struct JobSpec {
   std::vector<int64_t> plan;  ///< passes per mix, fixed (replay); empty: from the budget
   std::string reference;      ///< path on the client's machine, for people and `fetch`
   std::vector<Region> regions;
+  std::optional<Probe> probe;
   bool operator==(const JobSpec&) const = default;
 };
 
@@ -86,6 +106,19 @@ struct TileTask {
   bool operator==(const TileTask&) const = default;
 };
 
+/// A fixed piece of work, timed between slices of rendering (worker/render/calibration.h): what a second
+/// was worth on that machine then. CPU time in these units compares across machines and moods of one.
+struct Calibration {
+  uint64_t units = 0;
+  double seconds = 0;  ///< thread CPU of all units together; part of no mix's cpu_seconds
+  bool operator==(const Calibration&) const = default;
+  Calibration& operator+=(const Calibration& other) {
+    units += other.units;
+    seconds += other.seconds;
+    return *this;
+  }
+};
+
 /// What one mix of one tile task cost. Never part of the image's bits.
 struct MixCost {
   int64_t passes = 0;            ///< passes done
@@ -96,6 +129,7 @@ struct MixCost {
   /// Sum over the tile's pixels and channels of s²/(mean² + 1e-2), s² the variance of one pass; what a
   /// pilot tells `--target-error`. 0 with fewer than two passes.
   double relative_variance = 0;
+  Calibration calibration;  ///< timed beside this mix's slices; none in a pilot
   bool operator==(const MixCost&) const = default;
 };
 

@@ -59,6 +59,7 @@ struct MixSummary {
   double pilot_cpu_seconds = 0;
   std::vector<std::string> substitutions;
   std::vector<Checkpoint> checkpoints;  ///< reached by every tile, ascending
+  Calibration calibration;              ///< timed beside this mix's slices
   bool operator==(const MixSummary&) const = default;
 };
 
@@ -68,6 +69,7 @@ struct TileRow {
   int64_t passes = 0;
   double cpu_seconds = 0;
   std::string worker;
+  Calibration calibration;
   bool operator==(const TileRow&) const = default;
 };
 

@@ -68,6 +68,7 @@ std::vector<MixSummary> mix_summaries(const JobRecord& job) {
       mixes[m].rays += cost.rays;
       mixes[m].line_queries += cost.line_queries;
       mixes[m].non_finite += cost.non_finite;
+      mixes[m].calibration += cost.calibration;
       seconds[range][m] += cost.cpu_seconds;
     }
   });
@@ -95,6 +96,7 @@ std::vector<TileRow> tile_rows(const JobRecord& job) {
       row.worker = result.worker;
       row.passes += result.costs[m].passes;
       row.cpu_seconds += result.costs[m].cpu_seconds;
+      row.calibration += result.costs[m].calibration;
     }
   });
   std::vector<TileRow> out;

@@ -59,6 +59,7 @@ double expected_seconds(const JobSpec& spec, const std::vector<int64_t>& passes)
 /// variance is best known from single passes.
 int64_t choose_group(const JobSpec& spec, const std::vector<int64_t>& passes, double tile_seconds) {
   if (spec.sampler == SamplerKind::kIndependent) return 1;
+  if (spec.probe) return 1;  // its passes are repetitions
   const int64_t least = *std::min_element(passes.begin(), passes.end());
   const int64_t most = *std::max_element(passes.begin(), passes.end());
   const double seconds_per_pass = tile_seconds / static_cast<double>(most);

@@ -1,14 +1,16 @@
 // One tile task: all its mixes on this thread, in slices of passes, interleaved at random, so that the
 // machine's drift meets every mix alike (design §7).
-#include <time.h>
 #include <x86intrin.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "proto/status.h"
+#include "worker/render/calibration.h"
+#include "worker/render/integrand.h"
 #include "worker/render/light_pixels.h"
 #include "worker/render/path.h"
+#include "worker/render/thread_clock.h"
 #include "worker/render/tile_accumulator.h"
 
 namespace penumbra {
@@ -22,13 +24,10 @@ constexpr int64_t kSlice = 4;
 /// the image's error, and costs below 2 % of a pass.
 constexpr int kEmissionRays = 16;
 
-double thread_cpu_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
-}
-
 bool is_finite(const Rgb& c) { return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z); }
+
+/// Probes look at pixel centres.
+const Filter kCentre = Filter::centre();
 
 /// The passes of one mix over one tile.
 class MixRun {
@@ -39,6 +38,7 @@ class MixRun {
         job_(job),
         task_(task),
         camera_(camera),
+        filter_(job.probe ? kCentre : *scene.filter),
         light_pixels_(light_pixels),
         mix_index_(uint32_t(mix)),
         prepared_(job.mixes[mix], scene.lights),
@@ -50,6 +50,7 @@ class MixRun {
   int64_t left() const { return end_ - next_; }
   void stop() { end_ = next_; }
   double cpu_seconds() const { return cost_.cpu_seconds; }
+  Calibration& calibration() { return cost_.calibration; }
 
   void pass() {
     const double start = thread_cpu_seconds();
@@ -86,7 +87,7 @@ class MixRun {
     const uint64_t start = __rdtsc();
     const uint32_t index = uint32_t(y) * uint32_t(job_.width) + uint32_t(x);
     const PassSampler sampler(job_.sampler, job_.seed, mix_index_, task_.kind, index, next_, task_.group);
-    const FilterSample filter = scene_.filter->sample(sampler.film());
+    const FilterSample filter = filter_.sample(sampler.film());
     const Vec2d centre(x + 0.5, y + 0.5);
     const bool apart = light_pixels_[pixel] != 0;
     Rgb value = tracer_.radiance(ray(centre, filter), sampler, !apart) * float(filter.weight);
@@ -109,7 +110,7 @@ class MixRun {
   Rgb emission(const Vec2d& centre, const PassSampler& sampler) {
     Rgb sum(0);
     for (int i = 0; i < kEmissionRays; ++i) {
-      const FilterSample filter = scene_.filter->sample(sampler.film(i, kEmissionRays));
+      const FilterSample filter = filter_.sample(sampler.film(i, kEmissionRays));
       sum += tracer_.emission(ray(centre, filter)) * float(filter.weight);
     }
     return sum / float(kEmissionRays);
@@ -119,6 +120,7 @@ class MixRun {
   const JobSpec& job_;
   const TileTask& task_;
   const Camera& camera_;
+  const Filter& filter_;
   const std::vector<uint8_t>& light_pixels_;  ///< of the tile
   uint32_t mix_index_;
   PreparedMix prepared_;
@@ -169,6 +171,7 @@ bool run_pilot(std::vector<std::unique_ptr<MixRun>>& runs, double seconds, const
 TaskOutcome render_tile(const Scene& scene, const JobSpec& job, const TileTask& task,
                         const std::atomic<bool>& cancel) {
   PENUMBRA_CHECK(task.passes.size() == job.mixes.size());
+  if (job.probe && job.probe->kind == Probe::Kind::kIntegrand) return render_integrand(scene, job, task, cancel);
   TaskOutcome outcome;
   const auto camera = Camera::build(scene.description, job.width, job.height);
   PENUMBRA_CHECK(camera.ok());  // build_scene() has tried it
@@ -180,7 +183,9 @@ TaskOutcome render_tile(const Scene& scene, const JobSpec& job, const TileTask& 
   if (task.kind == TaskKind::kPilot) {
     outcome.cancelled = !run_pilot(runs, task.pilot_seconds, cancel);
   } else {
+    CalibrationClock calibration;
     for (size_t m : interleaving(task)) {
+      calibration.before_slice(runs[m]->calibration());
       for (int64_t p = std::min(kSlice, runs[m]->left()); p > 0; --p) {
         if (cancel.load(std::memory_order_relaxed)) {
           outcome.cancelled = true;

@@ -51,11 +51,15 @@ TEST(Convert, JobSpecsComeBack) {
   spec.budget = TargetErrorBudget{1e-3};
   spec.sampler = SamplerKind::kIndependent;
   expect_round_trip(spec);
+  spec.probe = Probe{};
+  expect_round_trip(spec);
+  spec.probe = Probe{Probe::Kind::kIntegrand, 256, 128, 9, 7, 2, {0, 1, 0}};
+  expect_round_trip(spec);
 }
 
 TEST(Convert, TasksCostsAndReportsComeBack) {
   expect_round_trip(TileTask{3, TaskKind::kPilot, {0, 0, 64, 32}, {{0, 8}, {2, 2}}, 4, 99, 0.5});
-  expect_round_trip(MixCost{8, 0.25, 1000, 20, 1, 3.5});
+  expect_round_trip(MixCost{8, 0.25, 1000, 20, 1, 3.5, {7, 0.125}});
   expect_round_trip(LoadReport{0.1, 0.2, {{"lens", "a.pbrt:3:1: aperture"}}, {"no texture"}});
   expect_round_trip(WorkerInfo{"uuid", "host", "avx2", 4});
 }
@@ -70,8 +74,8 @@ TEST(Convert, SummariesComeBack) {
   summary.status.plan = {7, 8, 9};
   summary.status.fraction = 0.5;
   for (const Mix& mix : summary.spec.mixes)
-    summary.mixes.push_back({mix, 7, 6, 1.5, 10, 20, 1, 0.1, {"sa for line-sa@v"}, {{1, 0.2}, {6, 1.5}}});
-  summary.tiles = {{{0, 0, 8, 8}, 2, 6, 0.5, "uuid"}};
+    summary.mixes.push_back({mix, 7, 6, 1.5, 10, 20, 1, 0.1, {"sa for line-sa@v"}, {{1, 0.2}, {6, 1.5}}, {7, 0.125}});
+  summary.tiles = {{{0, 0, 8, 8}, 2, 6, 0.5, "uuid", {3, 0.5}}};
   summary.workers = {{"uuid", "host", "avx512", 2}};
   summary.worker_cpu_seconds = 3;
   expect_round_trip(summary);
@@ -108,6 +112,14 @@ TEST(Convert, BothHalvesOfASyncComeBack) {
 
 TEST(Convert, ValuesOutOfRangeAreRefusedByName) {
   const std::vector<std::pair<std::string, std::function<void(v1::JobSpec&)>>> faults = {
+      {"probe.kind", [](v1::JobSpec& s) { s.mutable_probe(); }},
+      {"probe.x",
+       [](v1::JobSpec& s) {
+         s.mutable_probe()->set_kind(v1::Probe::KIND_INTEGRAND);
+         s.mutable_probe()->set_camera_width(4);
+         s.mutable_probe()->set_camera_height(4);
+         s.mutable_probe()->set_x(4);
+       }},
       {"width", [](v1::JobSpec& s) { s.set_width(0); }},
       {"height", [](v1::JobSpec& s) { s.set_height(65537); }},
       {"crop", [](v1::JobSpec& s) { s.mutable_crop()->set_x1(641); }},

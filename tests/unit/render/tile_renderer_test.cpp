@@ -3,6 +3,7 @@
 #include <atomic>
 
 #include "tests/support/render.h"
+#include "worker/render/calibration.h"
 #include "worker/render/renderer.h"
 
 namespace penumbra {
@@ -70,6 +71,50 @@ TEST(TileRenderer, APilotReportsCostsAndNoPixels) {
     EXPECT_GT(cost.cpu_seconds, 0);
     EXPECT_GT(cost.rays, 0u);
   }
+}
+
+TEST(TileRenderer, AProbeLooksAtPixelCentres) {
+  // A light without extent: nothing but the camera samples varies, at the sphere's outline and over it.
+  const ScenePtr scene = test::load_text(R"(LookAt 0 3 6  0 0.5 0  0 1 0
+Camera "perspective" "float fov" 40
+WorldBegin
+LightSource "distant" "point from" [ 1 2 3 ] "point to" [ 0 0 0 ]
+Shape "sphere" "float radius" 0.7
+)");
+  ASSERT_TRUE(scene);
+  JobSpec spec = test::job(16, 12, {"sa:1", "sa:1"}, 64);
+  const std::atomic<bool> cancel = false;
+  const auto spread = [&] {
+    const TaskOutcome outcome = render_tile(*scene, spec, task(spec, {0, 64}, {0, 0}), cancel);
+    double sum = 0;
+    for (const float m2 : outcome.pixels.mixes[0].m2) sum += m2;
+    return sum;
+  };
+  EXPECT_GT(spread(), 1);
+  spec.probe = Probe{};
+  EXPECT_EQ(spread(), 0);
+}
+
+TEST(TileRenderer, TheCalibrationLoopIsTimedInRunsOnly) {
+  const ScenePtr scene = test::load_text(kScene);
+  ASSERT_TRUE(scene);
+  const JobSpec spec = test::job(16, 12, {"sa:1", "bsdf:1"}, 1);
+  const std::atomic<bool> cancel = false;
+  Calibration total;
+  for (const MixCost& cost : render_tile(*scene, spec, task(spec, {0, 8}, {0, 8}), cancel).costs)
+    total += cost.calibration;
+  EXPECT_GE(total.units, 1u);
+  EXPECT_GT(total.seconds, 1e-6);
+  EXPECT_LT(total.seconds / static_cast<double>(total.units), 0.01);
+  TileTask pilot = task(spec, {0, 8}, {0, 8});
+  pilot.kind = TaskKind::kPilot;
+  for (const MixCost& cost : render_tile(*scene, spec, pilot, cancel).costs)
+    EXPECT_EQ(cost.calibration, Calibration{});
+}
+
+TEST(Calibration, AUnitIsAlwaysTheSameWork) {
+  EXPECT_EQ(calibration_unit(), calibration_unit());
+  EXPECT_GT(calibration_unit(), 1);
 }
 
 TEST(TileRenderer, CancelLeavesBetweenPasses) {

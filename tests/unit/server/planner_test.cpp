@@ -45,6 +45,13 @@ TEST(Planner, OnlyMeasuredBudgetsNeedAPilot) {
   EXPECT_EQ(*planned_passes(stored, {}), std::vector<int64_t>{5});
 }
 
+TEST(Planner, PassesOfAProbeAreRepetitions) {
+  JobSpec spec = spec_of(8, 8, {"sa", "bsdf"}, SppBudget{4096});
+  EXPECT_GT(make_plan(spec, {4096, 4096}).group, 1);
+  spec.probe = Probe{};
+  EXPECT_EQ(make_plan(spec, {4096, 256}).group, 1);
+}
+
 TEST(Planner, PilotCostsAShareOfTheBudget) {
   const JobSpec spec = spec_of(640, 360, {"sa", "bsdf"}, CpuSecondsBudget{60});
   const auto tiles = tiles_of(spec);
