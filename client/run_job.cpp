@@ -5,6 +5,7 @@
 
 #include "client/exit_code.h"
 #include "client/outcome.h"
+#include "client/preview.h"
 #include "client/progress.h"
 #include "proto/status.h"
 
@@ -55,8 +56,13 @@ absl::StatusOr<std::unique_ptr<Backend>> open_backend(const ServerOptions& optio
 }
 
 absl::StatusOr<FinishedRun> run_job(Backend& backend, const Submission& submission, const std::string& folder,
-                                    bool quiet, std::stop_token stop) {
+                                    bool quiet, std::stop_token stop, const std::string& display) {
   Server& server = *backend.server;
+  std::optional<Tev> tev;
+  if (!display.empty()) {
+    ASSIGN_OR_RETURN(Tev connected, Tev::connect(display));
+    tev.emplace(std::move(connected));
+  }
   Progress progress(Progress::style_for(quiet));
   for (const std::string& warning : submission.warnings) progress.note("warning: " + warning);
   RETURN_IF_ERROR(server.upload(submission.bundle, stop,
@@ -64,6 +70,8 @@ absl::StatusOr<FinishedRun> run_job(Backend& backend, const Submission& submissi
   ASSIGN_OR_RETURN(const JobId job, server.submit(submission.spec, stop));
 
   FinishedRun finished;
+  std::optional<Preview> preview;
+  if (tev) preview.emplace(server, job, *std::move(tev));
   const auto each = [&](const JobStatus& status) {
     progress.show(status);
     return backend.cluster ? backend.cluster->tend() : absl::OkStatus();
@@ -75,6 +83,7 @@ absl::StatusOr<FinishedRun> run_job(Backend& backend, const Submission& submissi
     watched = server.cancel(job);
   }
   progress.clear();
+  preview.reset();
   RETURN_IF_ERROR(watched.status());
   finished.last = *watched;
   const bool done = finished.last.state == JobState::kDone;
