@@ -91,26 +91,24 @@ absl::StatusOr<Json> write_outcome(Server& server, const JobId& job, const std::
                                    std::stop_token stop) {
   RunRecord run;
   run.partial = partial;
+  // The reference is named by the job itself. Without one nobody looks at the frames of the checkpoints.
+  ASSIGN_OR_RETURN(const RunSummary before, server.summary(job, stop));
   std::optional<FilmImage> reference;
-  bool asked = false;
-  // The reference is named by the job itself, which only the answer's summary tells.
-  const auto each_checkpoint = [&](const RunSummary& summary, int mix, int checkpoint,
-                                   const FilmImage& image) {
-    if (!asked && !summary.spec.reference.empty())
-      if (auto read = read_reference(summary.spec); read.ok()) reference = *std::move(read);
-    asked = true;
-    if (reference) keep_checkpoint(run, summary, mix, checkpoint, image, *reference);
-  };
+  absl::Status fault;  // told at the end: everything that can be written is written
+  if (!before.spec.reference.empty()) {
+    absl::StatusOr<FilmImage> read = read_reference(before.spec);
+    fault.Update(read.status());
+    if (read.ok()) reference = *std::move(read);
+  }
+  Server::EachCheckpoint each_checkpoint;
+  if (reference)
+    each_checkpoint = [&](const RunSummary& summary, int mix, int checkpoint, const FilmImage& image) {
+      keep_checkpoint(run, summary, mix, checkpoint, image, *reference);
+    };
   ASSIGN_OR_RETURN(const FetchedRun fetched, server.fetch(job, stop, each_checkpoint));
   run.summary = fetched.summary;
   run.scheduler_cpu_seconds = fetched.scheduler_cpu_seconds;
   run.mixes.resize(fetched.summary.mixes.size());
-  absl::Status fault;  // told at the end: everything that can be written is written
-  if (!fetched.summary.spec.reference.empty() && !reference) {
-    absl::StatusOr<FilmImage> read = read_reference(fetched.summary.spec);
-    fault.Update(read.status());
-    if (read.ok()) reference = *std::move(read);
-  }
   RETURN_IF_ERROR(make_folder(folder));
   remove_old_images(folder);
   fault.Update(write_images(folder, fetched, reference, run));

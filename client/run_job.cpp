@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "client/outcome.h"
+#include "client/preview.h"
 #include "client/progress.h"
 #include "client/quiet_run.h"
 #include "proto/status.h"
@@ -53,8 +54,13 @@ absl::StatusOr<std::unique_ptr<Backend>> open_local(const ClusterOptions& cluste
 }
 
 absl::StatusOr<FinishedRun> run_job(Backend& backend, const Submission& submission, const std::string& folder,
-                                    bool quiet, std::stop_token stop) {
+                                    bool quiet, std::stop_token stop, const std::string& display) {
   Server& server = *backend.server;
+  std::optional<Tev> tev;
+  if (!display.empty()) {
+    ASSIGN_OR_RETURN(Tev connected, Tev::connect(display));
+    tev.emplace(std::move(connected));
+  }
   Progress progress(Progress::style_for(quiet));
   for (const std::string& warning : submission.warnings) progress.note("warning: " + warning);
   RETURN_IF_ERROR(server.upload(submission.bundle, stop,
@@ -62,6 +68,8 @@ absl::StatusOr<FinishedRun> run_job(Backend& backend, const Submission& submissi
   ASSIGN_OR_RETURN(const JobId job, server.submit(submission.spec, stop));
 
   FinishedRun finished;
+  std::optional<Preview> preview;
+  if (tev) preview.emplace(server, job, *std::move(tev));
   const auto each = [&](const JobStatus& status) {
     progress.show(status);
     return backend.tend();
@@ -73,6 +81,7 @@ absl::StatusOr<FinishedRun> run_job(Backend& backend, const Submission& submissi
     watched = server.cancel(job);
   }
   progress.clear();
+  preview.reset();
   RETURN_IF_ERROR(watched.status());
   finished.last = *watched;
   const bool done = finished.last.state == JobState::kDone;

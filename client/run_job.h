@@ -34,8 +34,9 @@ absl::StatusOr<std::unique_ptr<Backend>> open_local(const ClusterOptions& cluste
                                                     const std::string& programs);
 
 /// Uploads, submits, follows, fetches, writes. When the token stops, the job is cancelled and what there
-/// is of it is written, marked partial. A job that failed is an error after its images are written.
+/// is of it is written, marked partial. A job that failed is an error after its images are written. `display`:
+/// HOST:PORT of a tev that shows the picture while it grows; empty: none.
 absl::StatusOr<FinishedRun> run_job(Backend& backend, const Submission& submission, const std::string& folder,
-                                    bool quiet, std::stop_token stop);
+                                    bool quiet, std::stop_token stop, const std::string& display = {});
 
 }  // namespace penumbra

@@ -113,6 +113,16 @@ Json workers_json(const RunSummary& summary) {
   return workers;
 }
 
+Json faults_json(const FaultCounts& faults) {
+  return {{"lost_leases", faults.lost_leases},
+          {"overdue_leases", faults.overdue_leases},
+          {"late_results", faults.late_results},
+          {"refused_results", faults.refused_results},
+          {"failures", faults.failures},
+          {"returned_leases", faults.returned_leases},
+          {"corrupt_results", faults.corrupt_results}};
+}
+
 Json plan_json(const RunSummary& summary) {
   Json plan = Json::array();
   for (const MixSummary& mix : summary.mixes) plan.push_back(mix.planned_passes);
@@ -145,6 +155,7 @@ Json run_json(const RunRecord& run) {
           {"first_result_seconds", s.first_result_seconds},
           {"worker_cpu_seconds", s.worker_cpu_seconds},
           {"retries", s.status.retries},
+          {"faults", faults_json(s.status.faults)},
           {"scheduler", {{"cpu_seconds", run.scheduler_cpu_seconds}}},
           {"warnings", s.load.warnings},
           {"calibration", calibration_json(total_calibration(s))},

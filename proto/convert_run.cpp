@@ -219,6 +219,71 @@ absl::StatusOr<WorkerInfo> from_proto(const v1::WorkerInfo& message) {
   return WorkerInfo{message.id(), message.host(), message.isa(), message.cores()};
 }
 
+static v1::Faults to_proto(const FaultCounts& faults) {
+  v1::Faults out;
+  out.set_lost_leases(faults.lost_leases);
+  out.set_overdue_leases(faults.overdue_leases);
+  out.set_late_results(faults.late_results);
+  out.set_refused_results(faults.refused_results);
+  out.set_failures(faults.failures);
+  out.set_returned_leases(faults.returned_leases);
+  out.set_corrupt_results(faults.corrupt_results);
+  return out;
+}
+
+static FaultCounts from_proto(const v1::Faults& message) {
+  return {message.lost_leases(),     message.overdue_leases(), message.late_results(),
+          message.refused_results(), message.failures(),       message.returned_leases(),
+          message.corrupt_results()};
+}
+
+v1::JobTerms to_proto(const JobTerms& terms) {
+  v1::JobTerms out;
+  out.set_user(terms.user);
+  out.set_priority(terms.priority);
+  for (const std::string& label : terms.labels) out.add_labels(label);
+  for (const JobId& job : terms.after) out.add_after(job);
+  return out;
+}
+
+absl::StatusOr<JobTerms> from_proto(const v1::JobTerms& message) {
+  constexpr int kMostPriority = 100, kMostListed = 64;
+  constexpr size_t kMostName = 256;
+  JobTerms terms;
+  if (message.user().size() > kMostName) return invalid_input("user: longer than {} bytes", kMostName);
+  RETURN_IF_ERROR(check_range("priority", message.priority(), -kMostPriority, kMostPriority));
+  if (message.labels_size() > kMostListed) return invalid_input("labels: more than {}", kMostListed);
+  if (message.after_size() > kMostListed) return invalid_input("after: more than {}", kMostListed);
+  for (const std::string& label : message.labels())
+    if (label.size() > kMostName || label.find('=') == 0 || label.find('=') == std::string::npos)
+      return invalid_input("labels: '{:.80}' is not of the form KEY=VALUE", label);
+  for (const std::string& job : message.after())
+    if (job.empty() || job.size() > kMostName) return invalid_input("after: '{:.80}' is not a job", job);
+  terms.user = message.user();
+  terms.priority = message.priority();
+  terms.labels = {message.labels().begin(), message.labels().end()};
+  terms.after = {message.after().begin(), message.after().end()};
+  return terms;
+}
+
+v1::LogResponse::Line to_proto(const LogLine& line) {
+  v1::LogResponse::Line out;
+  out.set_unix_seconds(line.unix_seconds);
+  if (line.task) out.set_task(*line.task);
+  out.set_worker(line.worker);
+  out.set_text(line.text);
+  return out;
+}
+
+absl::StatusOr<LogLine> from_proto(const v1::LogResponse::Line& message) {
+  RETURN_IF_ERROR(check_amount("unix_seconds", message.unix_seconds()));
+  RETURN_IF_ERROR(check_text("worker", message.worker()));
+  RETURN_IF_ERROR(check_text("text", message.text()));
+  LogLine line{message.unix_seconds(), std::nullopt, message.worker(), message.text()};
+  if (message.has_task()) line.task = message.task();
+  return line;
+}
+
 v1::JobStatus to_proto(const JobStatus& status) {
   v1::JobStatus out;
   out.set_job(status.job);
@@ -238,6 +303,8 @@ v1::JobStatus to_proto(const JobStatus& status) {
   out.set_retries(status.retries);
   out.set_scene(status.scene);
   out.set_submitted_unix_seconds(status.submitted_unix_seconds);
+  *out.mutable_faults() = to_proto(status.faults);
+  *out.mutable_terms() = to_proto(status.terms);
   return out;
 }
 
@@ -265,6 +332,8 @@ absl::StatusOr<JobStatus> from_proto(const v1::JobStatus& message) {
   status.retries = message.retries();
   status.scene = message.scene();
   status.submitted_unix_seconds = message.submitted_unix_seconds();
+  status.faults = from_proto(message.faults());
+  ASSIGN_OR_RETURN(status.terms, from_proto(message.terms()));
   return status;
 }
 

@@ -133,6 +133,8 @@ JobStatus status_of(const Scheduler& scheduler, const JobRecord& job, const Now&
   status.retries = job.retries();
   status.scene = job.spec().scene;
   status.submitted_unix_seconds = job.header.submitted_unix;
+  status.faults = job.header.faults;
+  status.terms = job.header.terms;
   if (status.message.empty() && status.state == JobState::kQueued && status.workers == 0)
     status.message = "waiting for a worker: none is connected";
   return status;
@@ -158,38 +160,6 @@ RunSummary summary_of(const Scheduler& scheduler, const JobRecord& job, const No
   if (job.header.first_result_unix != 0)
     summary.first_result_seconds = std::max(0.0, job.header.first_result_unix - job.header.submitted_unix);
   return summary;
-}
-
-std::vector<std::string> explain(const Scheduler& scheduler, const JobRecord& job, const Now& now) {
-  const JobStatus status = status_of(scheduler, job, now);
-  if (job.final())
-    return {fmt::format("The job is {}{}{}.", name_of(status.state), status.message.empty() ? "" : ": ",
-                        status.message)};
-  std::vector<std::string> reasons;
-  if (status.workers == 0) reasons.push_back("No worker is connected: start penumbra-worker.");
-  uint64_t ahead = 0;
-  for (const auto& [id, other] : scheduler.jobs())
-    if (!other->final() && other->header.submitted_unix < job.header.submitted_unix)
-      ahead += other->pending();
-  if (ahead > 0 && job.pending() > 0)
-    reasons.push_back(fmt::format("{} tasks of jobs submitted earlier come first.", ahead));
-  if (!job.plan())
-    reasons.push_back(fmt::format("The pilot that turns the budget into passes has done {} of {} tiles.",
-                                  status.tasks_done, status.tasks_total));
-  reasons.push_back(fmt::format("{} of {} tasks are done, {} are with workers, {} are waiting.",
-                                status.tasks_done, status.tasks_total, status.tasks_leased, job.pending()));
-  for (const auto& [id, worker] : scheduler.workers()) {
-    const auto holds = std::count_if(worker.leases.begin(), worker.leases.end(),
-                                     [&](const auto& lease) { return lease.first.first == job.header.id; });
-    reasons.push_back(
-        fmt::format("Worker {} on {} ({} threads{}) holds {} of its tasks and called {:.1f} s ago.",
-                    worker.name, worker.info.host, worker.info.cores, worker.draining ? ", draining" : "",
-                    holds, now.steady - worker.last_seen));
-  }
-  for (const auto& [task, blame] : job.blames)
-    reasons.push_back(fmt::format("Task {} has failed {} times; {} workers died while they rendered it.",
-                                  task, blame.reports, blame.deaths.size()));
-  return reasons;
 }
 
 }  // namespace penumbra

@@ -28,6 +28,8 @@ std::string serialize_header(const JobHeader& header) {
   status.message = header.message;
   status.plan = header.passes;
   status.submitted_unix_seconds = header.submitted_unix;
+  status.faults = header.faults;
+  status.terms = header.terms;
   *out.mutable_status() = to_proto(status);
   if (header.loaded) *out.mutable_loaded() = to_proto({header.id, header.load, header.substitutions});
   out.set_first_lease_unix(header.first_lease_unix);
@@ -51,6 +53,8 @@ absl::StatusOr<JobHeader> parse_header(std::string_view bytes) {
   header.message = std::move(status.message);
   header.passes = std::move(status.plan);
   header.submitted_unix = status.submitted_unix_seconds;
+  header.faults = status.faults;
+  header.terms = std::move(status.terms);
   header.loaded = message.has_loaded();
   if (header.loaded) {
     ASSIGN_OR_RETURN(LoadedScene scene, from_proto(message.loaded()));

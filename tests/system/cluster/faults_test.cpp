@@ -7,39 +7,10 @@
 #include <thread>
 
 #include "proto/convert.h"
-#include "tests/system/cluster/cluster.h"
+#include "tests/system/cluster/calm.h"
 
 namespace penumbra {
 namespace {
-
-std::string test_name() {
-  return testing::UnitTest::GetInstance()->current_test_info()->name();
-}
-
-/// The undisturbed run of the default spec: one worker, one thread.
-const Picture& calm() {
-  static const Picture picture = [] {
-    Cluster cluster("calm");
-    cluster.start_server();
-    cluster.start_worker();
-    const JobId job = cluster.submit(cluster.spec(cluster.upload_scene("0")));
-    EXPECT_EQ(cluster.wait_end(job).state, JobState::kDone);
-    Picture out;
-    cluster.fetch(job, out);
-    return out;
-  }();
-  return picture;
-}
-
-void expect_calm(Cluster& cluster, const JobId& job) {
-  EXPECT_EQ(cluster.wait_end(job).state, JobState::kDone);
-  Picture picture;
-  const RunSummary summary = cluster.fetch(job, picture);
-  ASSERT_EQ(picture.mean.size(), calm().mean.size());
-  EXPECT_EQ(picture.mean[0].size(), 96u * 64 * 3);
-  EXPECT_TRUE(picture == calm()) << "pixels differ";
-  for (const MixSummary& mix : summary.mixes) EXPECT_EQ(mix.passes, 32);
-}
 
 TEST(Faults, AnyNumberOfWorkersAndThreadsMakeTheSamePicture) {
   Cluster cluster(test_name());

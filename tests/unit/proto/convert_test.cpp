@@ -73,6 +73,8 @@ TEST(Convert, SummariesComeBack) {
   summary.status.message = "a.pbrt:1:1: no";
   summary.status.plan = {7, 8, 9};
   summary.status.fraction = 0.5;
+  summary.status.faults = {1, 2, 3, 4, 5, 6, 7};
+  summary.status.terms = {"ada", -7, {"shot=12"}, {"j0"}};
   for (const Mix& mix : summary.spec.mixes)
     summary.mixes.push_back({mix, 7, 6, 1.5, 10, 20, 1, 0.1, {"sa for line-sa@v"}, {{1, 0.2}, {6, 1.5}}, {7, 0.125}});
   summary.tiles = {{{0, 0, 8, 8}, 2, 6, 0.5, "uuid", {3, 0.5}}};
@@ -92,6 +94,7 @@ TEST(Convert, BothHalvesOfASyncComeBack) {
   state.completed.push_back({pilot, "", {}});
   state.failed.push_back({bad, TaskFailure::kBadInput, "why"});
   state.failed.push_back({returned, TaskFailure::kReturned, ""});
+  state.failed.push_back({{"j1", 8, 1}, TaskFailure::kLostInput, "gone"});
   state.loaded = {{"j1", {0.1, 0.2, {}, {"w"}}, {{0, "sa"}}}};
   state.wanted = 8;
   state.known_jobs = {"j1"};
