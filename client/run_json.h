@@ -28,8 +28,8 @@ struct RunRecord {
 };
 
 /// The run as the interface's schema 1, and more keys: `partial`, `state`, `reference`, `plan` (passes per
-/// mix), `spec` (enough to replay), `warnings`, `tiles`, `workers`, times of the phases. Figures that do
-/// not apply are null.
+/// mix), `auto_plans` (client/auto_plan_json.h), `spec` (enough to replay), `warnings`, `tiles`, `workers`,
+/// times of the phases. Figures that do not apply are null.
 Json run_json(const RunRecord& run);
 
 /// The job that renders the same bits again: the spec with the run's plan. InvalidArgument for a run.json
