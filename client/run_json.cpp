@@ -3,6 +3,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "client/auto_plan_json.h"
+#include "proto/auto_plan.h"
 #include "proto/status.h"
 
 namespace penumbra {
@@ -160,6 +162,7 @@ Json run_json(const RunRecord& run) {
           {"warnings", s.load.warnings},
           {"calibration", calibration_json(total_calibration(s))},
           {"plan", plan_json(s)},
+          {"auto_plans", auto_plans_json(s.spec, s.auto_plans)},
           {"spec", to_json(s.spec)}};
 }
 
@@ -172,6 +175,11 @@ absl::StatusOr<JobSpec> replay_spec(const Json& run) {
   } catch (const Json::exception& fault) {
     return invalid_input("plan: {}", fault.what());
   }
+  if (run.contains("auto_plans")) {
+    ASSIGN_OR_RETURN(spec.auto_plans, auto_plans_from_json(run["auto_plans"], spec));
+  }
+  if (spec.auto_plans.empty() && !automatic_mixes(spec.mixes).empty())
+    return invalid_input("auto_plans: none; the run ended before `auto` was planned");
   if (spec.plan.size() != spec.mixes.size())
     return invalid_input("plan: {} counts for {} mixes", spec.plan.size(), spec.mixes.size());
   for (const int64_t passes : spec.plan)
