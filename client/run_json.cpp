@@ -28,11 +28,19 @@ Json budget_ratio(const RunSummary& summary, const MixSummary& mix) {
 Json timeline_json(const MixSummary& mix, const MixRecord& record) {
   Json timeline = Json::array();
   for (size_t i = 0; i < mix.checkpoints.size(); ++i) {
-    Json relmse;
-    if (i < record.checkpoint_relmse.size()) relmse = or_null(record.checkpoint_relmse[i]);
+    CheckpointError error;
+    if (i < record.checkpoints.size()) error = record.checkpoints[i];
+    // The last point is the final image, whose own groups of passes say most.
+    if (i + 1 == mix.checkpoints.size() && record.own_error && mix.checkpoints[i].passes == mix.passes) {
+      error.estimated_relmse = record.own_error->relmse;
+      error.estimated_relmse_ci = record.own_error->relmse_ci;
+    }
     timeline.push_back({{"cpu_seconds", mix.checkpoints[i].cpu_seconds},
                         {"passes", mix.checkpoints[i].passes},
-                        {"relmse", relmse}});
+                        {"relmse", or_null(error.relmse)},
+                        {"relmse_ci", interval_json(error.relmse_ci)},
+                        {"estimated_relmse", or_null(error.estimated_relmse)},
+                        {"estimated_relmse_ci", interval_json(error.estimated_relmse_ci)}});
   }
   return timeline;
 }
@@ -60,6 +68,7 @@ Json mix_json(const RunSummary& summary, const MixSummary& mix, const MixRecord&
                      {"mse", figures.mse},
                      {"reference_floor", or_null(figures.reference_floor)}};
   const std::optional<ErrorFigures>& e = record.error;
+  const std::optional<OwnError>& own = record.own_error;
   return {{"mix", record.label},
           {"image", record.image},
           {"passes", mix.passes},
@@ -74,6 +83,8 @@ Json mix_json(const RunSummary& summary, const MixSummary& mix, const MixRecord&
           {"trimmed_relmse", e ? Json(e->trimmed_relmse) : Json(nullptr)},
           {"mse", e ? Json(e->mse) : Json(nullptr)},
           {"reference_floor", e ? or_null(e->reference_floor) : Json(nullptr)},
+          {"estimated_relmse", own ? Json(own->relmse) : Json(nullptr)},
+          {"estimated_relmse_ci", own ? interval_json(own->relmse_ci) : Json(nullptr)},
           {"regions", regions},
           {"timeline", timeline_json(mix, record)},
           {"planned_passes", mix.planned_passes},

@@ -37,7 +37,15 @@ TEST(RunJson, HasTheInterfacesKeys) {
   EXPECT_EQ(mix["image"], "bsdf-1+line-sa-v-3_balance.exr");
   EXPECT_EQ(mix["budget_ratio"], 0.95);
   EXPECT_EQ(mix["regions"]["left"]["relmse_ci"], Json::array({0.4, 0.6}));
-  EXPECT_EQ(mix["timeline"][0], (Json{{"cpu_seconds", 2.5}, {"passes", 16}, {"relmse", 2.0}}));
+  const Json& first = mix["timeline"][0];
+  EXPECT_EQ(first["cpu_seconds"], 2.5);
+  EXPECT_EQ(first["passes"], 16);
+  EXPECT_EQ(first["relmse"], 2.0);
+  EXPECT_EQ(first["relmse_ci"], Json::array({1.5, 2.5}));
+  EXPECT_EQ(first["estimated_relmse"], 1.75);
+  EXPECT_EQ(mix["estimated_relmse"], 0.45);
+  EXPECT_EQ(mix["timeline"][1]["estimated_relmse"], 0.45) << "the last point is the final image";
+  EXPECT_EQ(mix["timeline"][1]["estimated_relmse_ci"], Json::array({0.35, 0.55}));
 }
 
 TEST(RunJson, WhatDoesNotApplyIsNull) {
@@ -48,7 +56,8 @@ TEST(RunJson, WhatDoesNotApplyIsNull) {
   const Json& mix = json["mixes"][0];
   for (const char* key : {"budget_ratio", "ray_seconds", "relmse", "relmse_ci", "mse", "reference_floor"})
     EXPECT_TRUE(mix[key].is_null()) << key;
-  EXPECT_TRUE(mix["timeline"][1]["relmse"].is_null());
+  for (const char* key : {"relmse", "relmse_ci", "estimated_relmse", "estimated_relmse_ci"})
+    EXPECT_TRUE(mix["timeline"][1][key].is_null()) << key;
   EXPECT_EQ(json["budget"], (Json{{"spp", 64}}));
 }
 
