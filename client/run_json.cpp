@@ -3,6 +3,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "client/auto_plan_json.h"
+#include "proto/auto_plan.h"
 #include "proto/status.h"
 
 namespace penumbra {
@@ -26,11 +28,19 @@ Json budget_ratio(const RunSummary& summary, const MixSummary& mix) {
 Json timeline_json(const MixSummary& mix, const MixRecord& record) {
   Json timeline = Json::array();
   for (size_t i = 0; i < mix.checkpoints.size(); ++i) {
-    Json relmse;
-    if (i < record.checkpoint_relmse.size()) relmse = or_null(record.checkpoint_relmse[i]);
+    CheckpointError error;
+    if (i < record.checkpoints.size()) error = record.checkpoints[i];
+    // The last point is the final image, whose own groups of passes say most.
+    if (i + 1 == mix.checkpoints.size() && record.own_error && mix.checkpoints[i].passes == mix.passes) {
+      error.estimated_relmse = record.own_error->relmse;
+      error.estimated_relmse_ci = record.own_error->relmse_ci;
+    }
     timeline.push_back({{"cpu_seconds", mix.checkpoints[i].cpu_seconds},
                         {"passes", mix.checkpoints[i].passes},
-                        {"relmse", relmse}});
+                        {"relmse", or_null(error.relmse)},
+                        {"relmse_ci", interval_json(error.relmse_ci)},
+                        {"estimated_relmse", or_null(error.estimated_relmse)},
+                        {"estimated_relmse_ci", interval_json(error.estimated_relmse_ci)}});
   }
   return timeline;
 }
@@ -58,6 +68,7 @@ Json mix_json(const RunSummary& summary, const MixSummary& mix, const MixRecord&
                      {"mse", figures.mse},
                      {"reference_floor", or_null(figures.reference_floor)}};
   const std::optional<ErrorFigures>& e = record.error;
+  const std::optional<OwnError>& own = record.own_error;
   return {{"mix", record.label},
           {"image", record.image},
           {"passes", mix.passes},
@@ -72,6 +83,8 @@ Json mix_json(const RunSummary& summary, const MixSummary& mix, const MixRecord&
           {"trimmed_relmse", e ? Json(e->trimmed_relmse) : Json(nullptr)},
           {"mse", e ? Json(e->mse) : Json(nullptr)},
           {"reference_floor", e ? or_null(e->reference_floor) : Json(nullptr)},
+          {"estimated_relmse", own ? Json(own->relmse) : Json(nullptr)},
+          {"estimated_relmse_ci", own ? interval_json(own->relmse_ci) : Json(nullptr)},
           {"regions", regions},
           {"timeline", timeline_json(mix, record)},
           {"planned_passes", mix.planned_passes},
@@ -160,6 +173,7 @@ Json run_json(const RunRecord& run) {
           {"warnings", s.load.warnings},
           {"calibration", calibration_json(total_calibration(s))},
           {"plan", plan_json(s)},
+          {"auto_plans", auto_plans_json(s.spec, s.auto_plans)},
           {"spec", to_json(s.spec)}};
 }
 
@@ -172,6 +186,11 @@ absl::StatusOr<JobSpec> replay_spec(const Json& run) {
   } catch (const Json::exception& fault) {
     return invalid_input("plan: {}", fault.what());
   }
+  if (run.contains("auto_plans")) {
+    ASSIGN_OR_RETURN(spec.auto_plans, auto_plans_from_json(run["auto_plans"], spec));
+  }
+  if (spec.auto_plans.empty() && !automatic_mixes(spec.mixes).empty())
+    return invalid_input("auto_plans: none; the run ended before `auto` was planned");
   if (spec.plan.size() != spec.mixes.size())
     return invalid_input("plan: {} counts for {} mixes", spec.plan.size(), spec.mixes.size());
   for (const int64_t passes : spec.plan)

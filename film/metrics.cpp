@@ -11,8 +11,8 @@
 namespace penumbra {
 namespace {
 
-constexpr double kConfidence = 0.95;
 constexpr double kTrimmedShare = 1e-3;
+constexpr double kConfidence = 0.95;
 // Edge of the cells within which pixels count as equally hard.
 constexpr int kCellEdge = 2;
 constexpr int kLeastBlockEdge = 4;

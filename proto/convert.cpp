@@ -171,6 +171,7 @@ v1::JobSpec to_proto(const JobSpec& spec) {
   out.set_seed(spec.seed);
   out.set_strict(spec.strict);
   out.mutable_plan()->Add(spec.plan.begin(), spec.plan.end());
+  for (const AutoPlan& plan : spec.auto_plans) *out.add_auto_plans() = to_proto(plan);
   out.set_reference(spec.reference);
   for (const Region& region : spec.regions) {
     v1::Region* added = out.add_regions();
@@ -199,6 +200,9 @@ absl::StatusOr<JobSpec> from_proto(const v1::JobSpec& message) {
   spec.seed = message.seed();
   spec.strict = message.strict();
   ASSIGN_OR_RETURN(spec.plan, passes_from_proto("plan", message.plan()));
+  ASSIGN_OR_RETURN(spec.auto_plans, auto_plans_from_proto(message.auto_plans(), spec.mixes));
+  if (spec.plan.empty() != spec.auto_plans.empty() && !automatic_mixes(spec.mixes).empty())
+    return invalid_input("plan: passes and the plans of `auto` belong together");
   spec.reference = message.reference();
   ASSIGN_OR_RETURN(spec.regions, regions_from_proto(message));
   if (message.has_probe()) {
@@ -223,6 +227,8 @@ v1::TileTask to_proto(const TileTask& task) {
   out.set_group(task.group);
   out.set_shuffle(task.shuffle);
   out.set_pilot_seconds(task.pilot_seconds);
+  for (const ChosenMix& chosen : task.chosen) *out.add_chosen() = to_proto(chosen);
+  out.set_pilot_blocks(task.pilot_blocks);
   return out;
 }
 
@@ -245,6 +251,11 @@ absl::StatusOr<TileTask> from_proto(const v1::TileTask& message) {
   task.shuffle = message.shuffle();
   RETURN_IF_ERROR(check_amount("pilot_seconds", message.pilot_seconds()));
   task.pilot_seconds = message.pilot_seconds();
+  ASSIGN_OR_RETURN(task.chosen, list_from_proto<ChosenMix>("chosen", message.chosen()));
+  for (const ChosenMix& chosen : task.chosen)
+    RETURN_IF_ERROR(check_range("chosen.mix", chosen.mix, 0, message.passes_size() - 1));
+  RETURN_IF_ERROR(check_range("pilot_blocks", message.pilot_blocks(), 0, kMostTile * kMostTile));
+  task.pilot_blocks = message.pilot_blocks();
   return task;
 }
 

@@ -156,6 +156,10 @@ v1::MixCost to_proto(const MixCost& cost) {
   out.set_non_finite(cost.non_finite);
   out.set_relative_variance(cost.relative_variance);
   *out.mutable_calibration() = to_proto(cost.calibration);
+  out.set_pixels(cost.pixels);
+  out.set_relative_variance_squares(cost.relative_variance_squares);
+  out.set_work(cost.work);
+  out.set_overhead_seconds(cost.overhead_seconds);
   return out;
 }
 
@@ -163,6 +167,10 @@ absl::StatusOr<MixCost> from_proto(const v1::MixCost& message) {
   RETURN_IF_ERROR(check_range<int64_t>("costs.passes", message.passes(), 0, kMostPasses));
   RETURN_IF_ERROR(check_amount("costs.cpu_seconds", message.cpu_seconds()));
   RETURN_IF_ERROR(check_amount("costs.relative_variance", message.relative_variance()));
+  RETURN_IF_ERROR(check_range<int64_t>("costs.pixels", message.pixels(), 0, int64_t{1} << 32));
+  RETURN_IF_ERROR(check_amount("costs.relative_variance_squares", message.relative_variance_squares()));
+  RETURN_IF_ERROR(check_amount("costs.work", message.work()));
+  RETURN_IF_ERROR(check_amount("costs.overhead_seconds", message.overhead_seconds()));
   MixCost cost;
   ASSIGN_OR_RETURN(cost.calibration, from_proto(message.calibration()));
   cost.passes = message.passes();
@@ -171,6 +179,10 @@ absl::StatusOr<MixCost> from_proto(const v1::MixCost& message) {
   cost.line_queries = message.line_queries();
   cost.non_finite = message.non_finite();
   cost.relative_variance = message.relative_variance();
+  cost.pixels = message.pixels();
+  cost.relative_variance_squares = message.relative_variance_squares();
+  cost.work = message.work();
+  cost.overhead_seconds = message.overhead_seconds();
   return cost;
 }
 
@@ -349,6 +361,7 @@ v1::RunSummary to_proto(const RunSummary& summary) {
   out.set_render_wall_seconds(summary.render_wall_seconds);
   out.set_total_wall_seconds(summary.total_wall_seconds);
   out.set_first_result_seconds(summary.first_result_seconds);
+  for (const AutoPlan& plan : summary.auto_plans) *out.add_auto_plans() = to_proto(plan);
   return out;
 }
 
@@ -359,6 +372,7 @@ absl::StatusOr<RunSummary> from_proto(const v1::RunSummary& message) {
   ASSIGN_OR_RETURN(summary.mixes, list_from_proto<MixSummary>("mixes", message.mixes()));
   if (summary.mixes.size() != summary.spec.mixes.size())
     return invalid_input("mixes: {} summaries for {} mixes", summary.mixes.size(), summary.spec.mixes.size());
+  ASSIGN_OR_RETURN(summary.auto_plans, auto_plans_from_proto(message.auto_plans(), summary.spec.mixes));
   ASSIGN_OR_RETURN(summary.tiles, list_from_proto<TileRow>("tiles", message.tiles()));
   for (const TileRow& row : summary.tiles)
     RETURN_IF_ERROR(check_range("tiles.mix", row.mix, 0, static_cast<int>(summary.mixes.size()) - 1));

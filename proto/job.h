@@ -60,6 +60,22 @@ struct Probe {
   bool operator==(const Probe&) const = default;
 };
 
+/// What an `auto` mix does in one tile: one of its candidates, and how often.
+struct TilePlan {
+  int candidate = 0;   ///< place in AutoPlan::candidates
+  int64_t passes = 0;  ///< >= 1
+  bool operator==(const TilePlan&) const = default;
+};
+
+/// The plan of one automatic mix of a job. Names its candidates, so that a stored plan means the same to
+/// versions that would try others.
+struct AutoPlan {
+  int mix = 0;                  ///< the automatic mix's place in JobSpec::mixes
+  std::vector<Mix> candidates;  ///< none automatic
+  std::vector<TilePlan> tiles;  ///< one per tile of the job, row by row
+  bool operator==(const AutoPlan&) const = default;
+};
+
 /// Everything that decides a job's pixels, given the bundle's bytes.
 struct JobSpec {
   std::string scene;          ///< absolute path on the client's machine, for people
@@ -76,7 +92,9 @@ struct JobSpec {
   int tile = 64;              ///< edge of a tile, pixels
   uint64_t seed = 0;
   bool strict = false;        ///< warnings about the scene are errors
-  std::vector<int64_t> plan;  ///< passes per mix, fixed (replay); empty: from the budget
+  /// Passes per mix, fixed (replay); empty: from the budget. Of an automatic mix: the mean over the pixels.
+  std::vector<int64_t> plan;
+  std::vector<AutoPlan> auto_plans;  ///< with `plan`: one for each automatic mix, in their order
   std::string reference;      ///< path on the client's machine, for people and `fetch`
   std::vector<Region> regions;
   std::optional<Probe> probe;
@@ -93,6 +111,14 @@ struct PassRange {
 /// Pilot samples have random numbers of their own and never reach the image.
 enum class TaskKind { kPilot, kRun };
 
+/// What stands for an automatic mix of the job in one tile.
+struct ChosenMix {
+  int mix = 0;        ///< the automatic mix's place in JobSpec::mixes
+  Mix chosen;         ///< not automatic
+  int64_t group = 1;  ///< passes per independently scrambled group, in place of the task's
+  bool operator==(const ChosenMix&) const = default;
+};
+
 /// One tile × a range of passes × all mixes that are timed against each other.
 struct TileTask {
   uint64_t id = 0;                ///< unique within the job, in merge order
@@ -103,6 +129,10 @@ struct TileTask {
   uint64_t shuffle = 0;           ///< seeds the interleaving of the mixes' slices; not the image
   /// kPilot: thread-CPU seconds after which no further pass of a mix is begun (0: all passes).
   double pilot_seconds = 0;
+  /// kRun: one for each automatic mix, in their order. kPilot: all candidates of all automatic mixes,
+  /// measured on `pilot_blocks` small blocks of pixels (fewer where pilot_seconds per mix are up).
+  std::vector<ChosenMix> chosen;
+  int pilot_blocks = 0;
   bool operator==(const TileTask&) const = default;
 };
 
@@ -130,6 +160,14 @@ struct MixCost {
   /// pilot tells `--target-error`. 0 with fewer than two passes.
   double relative_variance = 0;
   Calibration calibration;  ///< timed beside this mix's slices; none in a pilot
+  // Of a candidate of `auto`, which a pilot measures on some of the tile's pixels: figures are sums over these.
+  int64_t pixels = 0;  ///< measured; `passes` is then the number of passes in each
+  /// Sum over the measured pixels of the square of their part of relative_variance: how sure that is.
+  double relative_variance_squares = 0;
+  /// Work counted in rays, line queries and their steps, in units of about a nanosecond; the same on every
+  /// machine with this instruction set.
+  double work = 0;
+  double overhead_seconds = 0;  ///< CPU time of the pilot's warming up, in no other figure
   bool operator==(const MixCost&) const = default;
 };
 

@@ -106,6 +106,7 @@ struct RunSummary {
   double render_wall_seconds = 0;
   double total_wall_seconds = 0;
   double first_result_seconds = 0;
+  std::vector<AutoPlan> auto_plans;  ///< one for each automatic mix, once planned
   bool operator==(const RunSummary&) const = default;
 };
 

@@ -19,8 +19,9 @@ struct JobHeader {
   JobState state = JobState::kQueued;
   FailureKind failure = FailureKind::kNone;
   std::string message;
-  std::vector<int64_t> passes;  ///< planned, per mix; empty until then
-  bool loaded = false;          ///< `load` and `substitutions` are known
+  std::vector<int64_t> passes;       ///< planned, per mix; empty until then
+  std::vector<AutoPlan> auto_plans;  ///< planned with `passes`, one for each automatic mix
+  bool loaded = false;               ///< `load` and `substitutions` are known
   LoadReport load;
   std::vector<Substitution> substitutions;
   // Seconds since 1970; 0 until it has happened.

@@ -29,11 +29,11 @@ TileTask JobRecord::description(uint64_t id) const {
 double JobRecord::work(uint64_t id) const {
   const uint64_t index = id - first_run_id_;
   const uint64_t range = index / tiles_.size();
+  const uint64_t tile = index % tiles_.size();
   double passes = 0;
   for (size_t m = 0; m < plan_->passes.size(); ++m)
-    passes += static_cast<double>(plan_->boundaries[range].passes[m] -
-                                  (range == 0 ? 0 : plan_->boundaries[range - 1].passes[m]));
-  return passes * static_cast<double>(tiles_[index % tiles_.size()].area());
+    passes += static_cast<double>(run_range(*plan_, range, tile, m).count());
+  return passes * static_cast<double>(tiles_[tile].area());
 }
 
 double JobRecord::fraction() const {
@@ -104,14 +104,18 @@ absl::Status JobRecord::make_run() {
   if (header.passes.empty()) {
     std::vector<std::vector<MixCost>> pilot;
     for (uint64_t id = 0; id < first_run_id_; ++id) pilot.push_back(results_[id]->costs);
-    ASSIGN_OR_RETURN(header.passes, planned_passes(spec(), pilot));
+    ASSIGN_OR_RETURN(PlannedPasses planned, planned_passes(spec(), pilot));
+    header.passes = std::move(planned.passes);
+    header.auto_plans = std::move(planned.autos);
   }
-  plan_ = make_plan(spec(), header.passes);
+  for (const AutoPlan& plan : header.auto_plans)
+    if (plan.tiles.size() != tiles_.size())
+      return invalid_input("auto_plans: {} tiles, where the job has {}", plan.tiles.size(), tiles_.size());
+  plan_ = make_plan(spec(), header.passes, header.auto_plans);
   stage_done_ = 0;
   stage_total_ = task_count(*plan_, tiles_);
   add_tasks(stage_total_);
-  for (size_t m = 0; m < plan_->passes.size(); ++m)
-    work_total_ += static_cast<double>(plan_->passes[m]) * static_cast<double>(spec().crop.area());
+  for (uint64_t id = first_run_id_; id < tasks_.size(); ++id) work_total_ += work(id);
   return absl::OkStatus();
 }
 

@@ -30,7 +30,7 @@ void for_each_result(const JobRecord& job, TaskKind kind, Visit visit) {
 double sum_cpu_seconds(const JobRecord& job, TaskKind kind) {
   double sum = 0;
   for_each_result(job, kind, [&](uint64_t, const AcceptedResult& result) {
-    for (const MixCost& cost : result.costs) sum += cost.cpu_seconds;
+    for (const MixCost& cost : result.costs) sum += cost.cpu_seconds + cost.overhead_seconds;
   });
   return sum;
 }
@@ -45,6 +45,20 @@ size_t whole_ranges(const JobRecord& job) {
   return range;
 }
 
+/// Of fixed mixes apart; of `auto` the pilot is part of its own cost: what it buys is the plan.
+void add_pilot(const JobRecord& job, std::vector<MixSummary>& mixes) {
+  for_each_result(job, TaskKind::kPilot, [&](uint64_t id, const AcceptedResult& result) {
+    const TileTask task = job.description(id);
+    for (size_t i = 0; i < result.costs.size(); ++i) {
+      const size_t m = i < mixes.size() ? i : static_cast<size_t>(task.chosen[i - mixes.size()].mix);
+      mixes[m].pilot_cpu_seconds += result.costs[i].cpu_seconds + result.costs[i].overhead_seconds;
+      mixes[m].non_finite += i < mixes.size() ? 0 : result.costs[i].non_finite;
+    }
+  });
+  for (MixSummary& mix : mixes)
+    if (mix.mix.automatic) mix.cpu_seconds = mix.pilot_cpu_seconds;
+}
+
 std::vector<MixSummary> mix_summaries(const JobRecord& job) {
   std::vector<MixSummary> mixes(job.spec().mixes.size());
   for (size_t m = 0; m < mixes.size(); ++m) {
@@ -52,9 +66,7 @@ std::vector<MixSummary> mix_summaries(const JobRecord& job) {
     if (job.plan()) mixes[m].planned_passes = job.plan()->passes[m];
   }
   for (const Substitution& s : job.header.substitutions) mixes[s.mix].substitutions.push_back(s.text);
-  for_each_result(job, TaskKind::kPilot, [&](uint64_t, const AcceptedResult& result) {
-    for (size_t m = 0; m < mixes.size(); ++m) mixes[m].pilot_cpu_seconds += result.costs[m].cpu_seconds;
-  });
+  add_pilot(job, mixes);
   if (!job.plan()) return mixes;
 
   const size_t tiles = job.tiles().size();
@@ -74,7 +86,7 @@ std::vector<MixSummary> mix_summaries(const JobRecord& job) {
   });
   const size_t whole = whole_ranges(job);
   for (size_t m = 0; m < mixes.size(); ++m) {
-    double sum = 0;
+    double sum = mixes[m].mix.automatic ? mixes[m].pilot_cpu_seconds : 0;
     for (size_t range = 0; range < whole; ++range) {
       const PassBoundary& boundary = job.plan()->boundaries[range];
       sum += seconds[range][m];
@@ -153,6 +165,7 @@ RunSummary summary_of(const Scheduler& scheduler, const JobRecord& job, const No
     if (known != scheduler.contributors().end()) used[result->worker] = known->second;
   }
   for (auto& [id, worker] : used) summary.workers.push_back(std::move(worker));
+  summary.auto_plans = job.header.auto_plans;
   summary.load = job.header.load;
   summary.worker_cpu_seconds = job.header.worker_cpu_seconds;
   summary.render_wall_seconds = render_seconds(job, now);

@@ -57,10 +57,12 @@ absl::StatusOr<JobSpec> checked_spec(const BlobFolder& blobs, const v1::SubmitRe
   if (request.request_id().empty() || request.request_id().size() > 128)
     return invalid_input("request_id: must have 1 to 128 characters");
   ASSIGN_OR_RETURN(JobSpec spec, from_proto(request.spec()));
-  for (const Mix& mix : spec.mixes)
-    if (mix.automatic) return invalid_input("mixes: this server does not plan `auto`");
-  if (tiles_of(spec).size() > kMostTiles)
+  const size_t tiles = tiles_of(spec).size();
+  if (tiles > kMostTiles)
     return invalid_input("tile: {} pixels make more than {} tiles of this picture", spec.tile, kMostTiles);
+  for (const AutoPlan& plan : spec.auto_plans)
+    if (plan.tiles.size() != tiles)
+      return invalid_input("auto_plans: {} tiles, where the job has {}", plan.tiles.size(), tiles);
   RETURN_IF_ERROR(check_bundle(blobs, spec));
   return spec;
 }

@@ -11,8 +11,8 @@ namespace {
 /// Whether the result is what the task asked for.
 absl::Status check_result(const TileTask& task, const CompletedTask& done,
                           const absl::StatusOr<ResultShape>& shape) {
-  if (done.costs.size() != task.passes.size())
-    return invalid_input("{} costs for {} mixes", done.costs.size(), task.passes.size());
+  if (done.costs.size() != costs_of(task))
+    return invalid_input("{} costs, where the task has {}", done.costs.size(), costs_of(task));
   if (task.kind == TaskKind::kPilot) return absl::OkStatus();
   if (!shape.ok()) return shape.status();
   if (shape->rect != task.tile) return invalid_input("the result covers another tile");

@@ -38,6 +38,7 @@ std::string serialize_header(const JobHeader& header) {
   out.set_finished_unix(header.finished_unix);
   out.set_worker_cpu_seconds(header.worker_cpu_seconds);
   out.set_scheduler_cpu_seconds(header.scheduler_cpu_seconds);
+  for (const AutoPlan& plan : header.auto_plans) *out.add_auto_plans() = to_proto(plan);
   return out.SerializeAsString();
 }
 
@@ -67,6 +68,7 @@ absl::StatusOr<JobHeader> parse_header(std::string_view bytes) {
   header.finished_unix = message.finished_unix();
   header.worker_cpu_seconds = message.worker_cpu_seconds();
   header.scheduler_cpu_seconds = message.scheduler_cpu_seconds();
+  ASSIGN_OR_RETURN(header.auto_plans, auto_plans_from_proto(message.auto_plans(), header.spec.mixes));
   return header;
 }
 

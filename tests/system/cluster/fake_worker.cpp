@@ -40,6 +40,13 @@ class FakeScene final : public RenderableScene {
       outcome.costs.push_back({passes, 0.001 * static_cast<double>(passes), 1, 1, 0, 1});
       if (task.kind == TaskKind::kRun) outcome.pixels.mixes.push_back(pixels(job, task, m));
     }
+    if (task.kind == TaskKind::kPilot)
+      for (size_t k = 0; k < task.chosen.size(); ++k) {
+        MixCost cost{4, 0.001 + 0.0001 * static_cast<double>(k), 1, 1, 0, 1};
+        cost.pixels = 16;
+        cost.work = 1;
+        outcome.costs.push_back(cost);
+      }
     return outcome;
   }
   std::vector<std::string> substitutions(const Mix&) const override { return {"a substitution"}; }

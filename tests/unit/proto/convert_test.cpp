@@ -57,9 +57,43 @@ TEST(Convert, JobSpecsComeBack) {
   expect_round_trip(spec);
 }
 
+TEST(Convert, PlansOfAutoComeBack) {
+  JobSpec spec = full_spec();
+  spec.mixes.push_back(*parse_mix("auto"));
+  spec.plan = {7, 8, 9, 10};
+  spec.auto_plans = {{3, {*parse_mix("sa:4"), *parse_mix("bsdf:1+sa:1")}, {{1, 5}, {0, 15}}}};
+  expect_round_trip(spec);
+  const std::vector<std::pair<std::string, std::function<void(v1::AutoPlan&)>>> faults = {
+      {"auto_plans", [](v1::AutoPlan& p) { p.set_mix(2); }},
+      {"candidates", [](v1::AutoPlan& p) { p.clear_candidates(); }},
+      {"candidates", [](v1::AutoPlan& p) { p.set_candidates(0, "auto"); }},
+      {"candidate", [](v1::AutoPlan& p) { p.mutable_tiles(0)->set_candidate(2); }},
+      {"passes", [](v1::AutoPlan& p) { p.mutable_tiles(1)->set_passes(0); }},
+  };
+  for (const auto& [field, break_it] : faults) {
+    v1::JobSpec message = to_proto(spec);
+    break_it(*message.mutable_auto_plans(0));
+    const auto read = from_proto(message);
+    ASSERT_FALSE(read.ok()) << field;
+    EXPECT_NE(message_of(read.status()).find(field), std::string::npos) << read.status();
+  }
+  v1::JobSpec message = to_proto(spec);
+  message.clear_auto_plans();
+  EXPECT_FALSE(from_proto(message).ok()) << "passes without the plan of `auto`";
+}
+
 TEST(Convert, TasksCostsAndReportsComeBack) {
   expect_round_trip(TileTask{3, TaskKind::kPilot, {0, 0, 64, 32}, {{0, 8}, {2, 2}}, 4, 99, 0.5});
-  expect_round_trip(MixCost{8, 0.25, 1000, 20, 1, 3.5, {7, 0.125}});
+  expect_round_trip(TileTask{3,
+                             TaskKind::kPilot,
+                             {0, 0, 64, 32},
+                             {{0, 0}},
+                             4,
+                             99,
+                             0.5,
+                             {{0, *parse_mix("sa:4"), 2}, {0, *parse_mix("bsdf:1+line-sa@v:1/free"), 1}},
+                             9});
+  expect_round_trip(MixCost{8, 0.25, 1000, 20, 1, 3.5, 64, 7.25, 1e9, 0.125, {7, 0.125}});
   expect_round_trip(LoadReport{0.1, 0.2, {{"lens", "a.pbrt:3:1: aperture"}}, {"no texture"}});
   expect_round_trip(WorkerInfo{"uuid", "host", "avx2", 4});
 }

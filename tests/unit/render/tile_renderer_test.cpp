@@ -117,6 +117,72 @@ TEST(Calibration, AUnitIsAlwaysTheSameWork) {
   EXPECT_GT(calibration_unit(), 1);
 }
 
+TEST(TileRenderer, AutoIsWhatItsTaskSays) {
+  const ScenePtr scene = test::load_text(kScene);
+  ASSERT_TRUE(scene);
+  const std::atomic<bool> cancel = false;
+  const JobSpec fixed = test::job(16, 12, {"sa:1", "bsdf:1+line-sa@u:1"}, 8);
+  const JobSpec automatic = test::job(16, 12, {"sa:1", "auto"}, 8);
+  TileTask a = task(fixed, {0, 8}, {0, 8}), b = a;
+  a.group = 4;
+  b.group = 1;
+  b.chosen = {{1, fixed.mixes[1], 4}};
+  const TaskOutcome x = render_tile(*scene, fixed, a, cancel), y = render_tile(*scene, automatic, b, cancel);
+  EXPECT_EQ(x.pixels.mixes[1].mean, y.pixels.mixes[1].mean) << "another mix, or another group than chosen";
+  EXPECT_EQ(y.pixels.mixes[1].groups, 2);
+  EXPECT_EQ(y.costs.size(), 2u);
+}
+
+/// A pilot of `auto` with these candidates on 5 blocks.
+std::vector<MixCost> candidate_costs(const Scene& scene, const std::vector<const char*>& candidates,
+                                     uint64_t shuffle) {
+  const JobSpec spec = test::job(16, 12, {"auto"}, 8);
+  TileTask pilot;
+  pilot.kind = TaskKind::kPilot;
+  pilot.tile = spec.crop;
+  pilot.passes = {{0, 0}};
+  pilot.shuffle = shuffle;
+  pilot.pilot_blocks = 5;
+  for (const char* text : candidates) pilot.chosen.push_back({0, *parse_mix(text), 1});
+  const std::atomic<bool> cancel = false;
+  TaskOutcome outcome = render_tile(scene, spec, pilot, cancel);
+  EXPECT_EQ(outcome.costs.size(), 1 + candidates.size());
+  return {outcome.costs.begin() + 1, outcome.costs.end()};
+}
+
+TEST(TileRenderer, CandidatesAreMeasuredOnTheSamePixels) {
+  const ScenePtr scene = test::load_text(kScene);
+  ASSERT_TRUE(scene);
+  const auto costs = candidate_costs(*scene, {"sa:1", "sa:1", "sa:16", "line-sa@u:1"}, 1);
+  for (const MixCost& cost : costs) {
+    EXPECT_EQ(cost.pixels, 5 * 8);
+    EXPECT_EQ(cost.passes, 4);
+    EXPECT_GT(cost.cpu_seconds, 0);
+    EXPECT_GT(cost.work, 0);
+  }
+  EXPECT_EQ(costs[0].relative_variance, costs[1].relative_variance) << "other random numbers";
+  EXPECT_GT(costs[0].relative_variance, 2 * costs[2].relative_variance);
+  EXPECT_GT(costs[2].work, 2 * costs[0].work);
+  EXPECT_GT(costs[3].line_queries, 0u);
+  // Whatever the order of rendering and the clock: what plans of pass counts are made from is the same.
+  const auto again = candidate_costs(*scene, {"sa:1", "sa:1", "sa:16", "line-sa@u:1"}, 99);
+  for (size_t k = 0; k < costs.size(); ++k) {
+    EXPECT_EQ(costs[k].relative_variance, again[k].relative_variance);
+    EXPECT_EQ(costs[k].work, again[k].work);
+  }
+}
+
+TEST(TileRenderer, LinesAreNoCandidatesWhereNoLightServesThem) {
+  std::string text = kScene;
+  const size_t quad = text.find("Shape \"quad\"");
+  text.replace(quad, text.find('\n', quad) - quad, "Translate 0 3 0 Shape \"sphere\" \"float radius\" 0.3");
+  const ScenePtr scene = test::load_text(text.c_str());
+  ASSERT_TRUE(scene);
+  const auto costs = candidate_costs(*scene, {"bsdf:1+line-sa@v:1", "sa:1"}, 1);
+  EXPECT_EQ(costs[0].pixels, 0);
+  EXPECT_EQ(costs[1].pixels, 5 * 8);
+}
+
 TEST(TileRenderer, CancelLeavesBetweenPasses) {
   const ScenePtr scene = test::load_text(kScene);
   ASSERT_TRUE(scene);
