@@ -3,7 +3,7 @@
 
 namespace penumbra {
 
-/// Files that the build put into the program.
+/// The report's page, which the build put into the program (penumbra_embed).
 std::string_view embedded_report_html();
 std::string_view embedded_report_css();
 std::string_view embedded_report_js();

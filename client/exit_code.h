@@ -9,6 +9,8 @@ enum ExitCode : int {
   kExitDone = 0,
   kExitJobFailed = 1,
   kExitBadInput = 2,  ///< bad usage or bad input
+  kExitWorse = 3,         ///< gate
+  kExitInconclusive = 4,  ///< gate
   kExitUnreachable = 5,
   kExitInterrupted = 130,
 };

@@ -2,6 +2,7 @@
 
 #include <variant>
 
+#include "client/auto_plan_json.h"
 #include "client/parse_text.h"
 #include "film/film_image.h"
 #include "proto/status.h"
@@ -49,6 +50,11 @@ absl::StatusOr<JobSpec> read(const Json& json) {
   if (spec.width < 1 || spec.height < 1 || spec.crop.area() <= 0 ||
       !contains({0, 0, spec.width, spec.height}, spec.crop))
     return invalid_input("spec: the crop does not lie in {}x{}", spec.width, spec.height);
+  if (spec.tile < 1) return invalid_input("spec: tile {}", spec.tile);
+  // Absent where an earlier version wrote the file: it had no `auto`.
+  if (json.contains("auto_plans")) {
+    ASSIGN_OR_RETURN(spec.auto_plans, auto_plans_from_json(json["auto_plans"], spec));
+  }
   return spec;
 }
 
@@ -89,6 +95,7 @@ Json to_json(const JobSpec& spec) {
           {"seed", spec.seed},
           {"strict", spec.strict},
           {"plan", spec.plan},
+          {"auto_plans", auto_plans_json(spec, spec.auto_plans)},
           {"reference", spec.reference},
           {"regions", regions}};
 }

@@ -13,6 +13,12 @@ absl::StatusOr<std::vector<JobStatus>> list(const ServerOptions& o, std::stop_to
   return server.jobs(stop);
 }
 
+std::string labels_text(const JobTerms& terms) {
+  std::string text;
+  for (const std::string& label : terms.labels) text += "  " + label;
+  return text;
+}
+
 }  // namespace
 
 void add_jobs(CLI::App& app, Chosen& chosen) {
@@ -24,8 +30,8 @@ void add_jobs(CLI::App& app, Chosen& chosen) {
       const absl::StatusOr<std::vector<JobStatus>> jobs = list(*options, stop);
       if (!jobs.ok()) return tell(jobs.status());
       for (const JobStatus& job : *jobs)
-        fmt::print("{:16}  {:9}  {:3.0f} %  {}\n", job.job, name_of(job.state), 100 * job.fraction,
-                   job.scene);
+        fmt::print("{:16}  {:9}  {:3.0f} %  {:8}  {:4}  {}{}\n", job.job, name_of(job.state),
+                   100 * job.fraction, job.terms.user, job.terms.priority, job.scene, labels_text(job.terms));
       return 0;
     };
   });

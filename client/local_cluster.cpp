@@ -1,6 +1,7 @@
 #include "client/local_cluster.h"
 
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstdlib>
@@ -36,9 +37,10 @@ absl::Status ended(const char* what, ChildProcess& process) {
 
 }  // namespace
 
-absl::StatusOr<LocalCluster> LocalCluster::start(const ClusterSize& size) {
+absl::StatusOr<LocalCluster> LocalCluster::start(const ClusterSize& size, const std::string& programs) {
   LocalCluster cluster;
   cluster.size_ = size;
+  cluster.programs_ = programs;
   ASSIGN_OR_RETURN(cluster.folder_, make_folder());
   RETURN_IF_ERROR(cluster.start_server());
   for (int i = 0; i < size.workers; ++i) RETURN_IF_ERROR(cluster.start_worker(static_cast<size_t>(i)));
@@ -49,8 +51,16 @@ LocalCluster::~LocalCluster() {
   stop();
 }
 
+absl::StatusOr<std::string> LocalCluster::program(const std::string& name) const {
+  if (programs_.empty()) return program_beside_this(name);
+  const fs::path base = programs_;
+  for (const fs::path& path : {base / "bin" / name, base / name})
+    if (access(path.c_str(), X_OK) == 0) return path.string();
+  return invalid_input("{}: no build is there: it has no bin/{}", programs_, name);
+}
+
 absl::Status LocalCluster::start_server() {
-  ASSIGN_OR_RETURN(const std::string program, program_beside_this("penumbra-server"));
+  ASSIGN_OR_RETURN(const std::string program, this->program("penumbra-server"));
   const fs::path folder = folder_, announced = folder / "address";
   ASSIGN_OR_RETURN(ChildProcess server, ChildProcess::start(program,
                                                             {"--listen", "127.0.0.1:0", "--store",
@@ -71,7 +81,7 @@ absl::Status LocalCluster::start_server() {
 }
 
 absl::Status LocalCluster::start_worker(size_t index) {
-  ASSIGN_OR_RETURN(const std::string program, program_beside_this("penumbra-worker"));
+  ASSIGN_OR_RETURN(const std::string program, this->program("penumbra-worker"));
   const fs::path folder = folder_;
   ASSIGN_OR_RETURN(ChildProcess worker,
                    ChildProcess::start(program,

@@ -13,7 +13,8 @@ namespace penumbra {
 class LocalCluster {
  public:
   /// Starts the server, waits until it listens, starts the workers.
-  static absl::StatusOr<LocalCluster> start(const ClusterSize& size);
+  /// `programs`: a build's folder (with bin/), instead of the programs beside this one.
+  static absl::StatusOr<LocalCluster> start(const ClusterSize& size, const std::string& programs = "");
   LocalCluster(LocalCluster&&) = default;
   LocalCluster& operator=(LocalCluster&&) = delete;
   ~LocalCluster();
@@ -29,11 +30,12 @@ class LocalCluster {
 
  private:
   LocalCluster() = default;
+  absl::StatusOr<std::string> program(const std::string& name) const;
   absl::Status start_server();
   absl::Status start_worker(size_t index);
 
   ClusterSize size_;
-  std::string folder_, address_;
+  std::string programs_, folder_, address_;
   std::vector<ChildProcess> server_;  ///< none or one
   std::vector<ChildProcess> workers_;
   int restarts_ = 0;

@@ -22,8 +22,9 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}));
 
   Chosen chosen;
-  for (const auto add : {add_render, add_submit, add_wait, add_watch, add_explain, add_cancel, add_jobs,
-                         add_fetch, add_inspect, add_compare, add_replay, add_report})
+  for (const auto add : {add_render, add_submit, add_wait, add_watch, add_explain, add_log, add_cancel, add_jobs,
+                         add_fetch, add_inspect, add_compare, add_replay, add_gate, add_calibrate, add_converge,
+                         add_report})
     add(app, chosen);
   try {
     app.parse(argc, argv);

@@ -14,14 +14,17 @@ namespace {
 constexpr int64_t kMostWorkers = 1024;
 constexpr int64_t kMostPasses = int64_t{1} << 40;
 
-/// What is rendered where neither the command line nor the scene says: the two classic strategies.
-constexpr const char* kDefaultMix = "bsdf:1+sa:1/balance";
+/// What is rendered where neither the command line nor the scene says.
+constexpr const char* kDefaultMix = "auto";
+
+/// Edge of a tile where `auto` is rendered: a quarter of the pixels of the usual tile, because each tile has
+/// one plan, and smaller parts of a picture are more of one kind.
+constexpr int kAutoTile = 32;
 
 absl::StatusOr<std::vector<Mix>> mixes_of(const JobOptions& options, const SceneDefaults& scene) {
   std::vector<Mix> mixes;
   for (const std::string& text : options.mixes) {
     ASSIGN_OR_RETURN(Mix mix, parse_mix(text));
-    if (mix.automatic) return invalid_input("--mix: 'auto' comes with a later version; name a mix");
     mixes.push_back(std::move(mix));
   }
   if (mixes.empty() && scene.mix) mixes.push_back(*scene.mix);
@@ -115,7 +118,8 @@ void add_job_options(CLI::App& app, JobOptions& o) {
          "--mix", o.mixes,
          "strategy[:count] joined by +, then /combination; repeatable. "
          "Strategies: bsdf area sa line-area@DEG line-sa@u line-sa@v. Combinations: /balance (default) "
-         "/average. Default: the scene's Integrator \"pointline\", else bsdf:1+sa:1/balance")
+         "/free /power /average. Or auto, alone: the planner chooses for each tile. "
+         "Default: the scene's Integrator \"pointline\", else auto")
       ->type_name("MIX")
       ->allow_extra_args(false);
   app.add_option("--budget", o.budget, "CPU seconds per mix: 500ms, 30s, 2m")->type_name("DURATION");
@@ -130,7 +134,7 @@ void add_job_options(CLI::App& app, JobOptions& o) {
   app.add_option("--crop", o.crop, "Render only these pixels, half-open")->type_name("X0,Y0,X1,Y1");
   app.add_option("--max-depth", o.max_depth, "Vertices with direct light; above 1 along specular chains")
       ->type_name("N");
-  app.add_option("--tile", o.tile, "Edge of a tile, pixels (default 64)")->type_name("N");
+  app.add_option("--tile", o.tile, "Edge of a tile, pixels (default 64; with auto 32)")->type_name("N");
   app.add_option("--camera-grid", o.camera_grid,
                  "Camera samples only at the centres of NxN cells a pixel, as some references are made")
       ->type_name("N");
@@ -153,6 +157,8 @@ absl::StatusOr<JobSpec> make_job(const JobOptions& o, const SceneDefaults& scene
     ASSIGN_OR_RETURN(const int64_t depth, parse_whole("--max-depth", o.max_depth, 1, kMostDepth));
     job.max_depth = static_cast<int>(depth);
   }
+  const auto automatic = [](const Mix& mix) { return mix.automatic; };
+  if (std::any_of(job.mixes.begin(), job.mixes.end(), automatic)) job.tile = kAutoTile;
   if (!o.tile.empty()) {
     ASSIGN_OR_RETURN(const int64_t tile, parse_whole("--tile", o.tile, 1, kMostTile));
     job.tile = static_cast<int>(tile);

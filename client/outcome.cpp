@@ -3,9 +3,11 @@
 #include <filesystem>
 #include <set>
 
+#include "client/checkpoint_errors.h"
 #include "client/report.h"
 #include "film/atomic_file.h"
 #include "film/exr.h"
+#include "film/own_error.h"
 #include "proto/status.h"
 
 namespace penumbra {
@@ -44,17 +46,6 @@ absl::Status measure(const FilmImage& image, const FilmImage& reference, const J
   return absl::OkStatus();
 }
 
-/// relMSE of a checkpoint's image, kept at its place.
-void keep_checkpoint(RunRecord& run, const RunSummary& summary, int mix, int checkpoint,
-                     const FilmImage& image, const FilmImage& reference) {
-  const auto m = static_cast<size_t>(mix), c = static_cast<size_t>(checkpoint);
-  if (run.mixes.size() < summary.mixes.size()) run.mixes.resize(summary.mixes.size());
-  auto& figures = run.mixes[m].checkpoint_relmse;
-  if (c >= summary.mixes[m].checkpoints.size()) return;  // the final image of a run cut short is none
-  figures.resize(summary.mixes[m].checkpoints.size());
-  if (const auto error = compare(image, reference); error.ok()) figures[c] = error->relmse;
-}
-
 absl::Status write_images(const fs::path& folder, const FetchedRun& fetched,
                           const std::optional<FilmImage>& reference, RunRecord& run) {
   absl::Status measured;  // a comparison that fails must not cost the images that follow
@@ -69,6 +60,7 @@ absl::Status write_images(const fs::path& folder, const FetchedRun& fetched,
     RETURN_IF_ERROR(
         write_exr(folder / record.image, image,
                   {names[m], fetched.summary.mixes[m].cpu_seconds, spec.scene, spec.seed, run.partial}));
+    record.own_error = own_error(image);
     if (reference) measured.Update(measure(image, *reference, spec, record));
   }
   return measured;
@@ -91,26 +83,25 @@ absl::StatusOr<Json> write_outcome(Server& server, const JobId& job, const std::
                                    std::stop_token stop) {
   RunRecord run;
   run.partial = partial;
+  // The reference is named by the job itself.
+  ASSIGN_OR_RETURN(const RunSummary before, server.summary(job, stop));
   std::optional<FilmImage> reference;
-  bool asked = false;
-  // The reference is named by the job itself, which only the answer's summary tells.
+  absl::Status fault;  // told at the end: everything that can be written is written
+  if (!before.spec.reference.empty()) {
+    absl::StatusOr<FilmImage> read = read_reference(before.spec);
+    fault.Update(read.status());
+    if (read.ok()) reference = *std::move(read);
+  }
+  CheckpointErrors checkpoints;
   const auto each_checkpoint = [&](const RunSummary& summary, int mix, int checkpoint,
                                    const FilmImage& image) {
-    if (!asked && !summary.spec.reference.empty())
-      if (auto read = read_reference(summary.spec); read.ok()) reference = *std::move(read);
-    asked = true;
-    if (reference) keep_checkpoint(run, summary, mix, checkpoint, image, *reference);
+    checkpoints.add(summary, mix, checkpoint, image, reference);
   };
   ASSIGN_OR_RETURN(const FetchedRun fetched, server.fetch(job, stop, each_checkpoint));
   run.summary = fetched.summary;
   run.scheduler_cpu_seconds = fetched.scheduler_cpu_seconds;
   run.mixes.resize(fetched.summary.mixes.size());
-  absl::Status fault;  // told at the end: everything that can be written is written
-  if (!fetched.summary.spec.reference.empty() && !reference) {
-    absl::StatusOr<FilmImage> read = read_reference(fetched.summary.spec);
-    fault.Update(read.status());
-    if (read.ok()) reference = *std::move(read);
-  }
+  for (size_t m = 0; m < run.mixes.size(); ++m) run.mixes[m].checkpoints = checkpoints.of(m);
   RETURN_IF_ERROR(make_folder(folder));
   remove_old_images(folder);
   fault.Update(write_images(folder, fetched, reference, run));

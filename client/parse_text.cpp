@@ -50,6 +50,13 @@ absl::StatusOr<double> parse_positive(std::string_view flag, std::string_view te
   return *value;
 }
 
+absl::StatusOr<double> parse_percent(std::string_view flag, std::string_view text) {
+  const auto value = text.ends_with('%') ? number<double>(text.substr(0, text.size() - 1)) : std::nullopt;
+  if (!value || !std::isfinite(*value) || !(*value > 0))
+    return invalid_input("{}: '{}' is not a positive percentage such as 5%", flag, text);
+  return *value / 100;
+}
+
 absl::StatusOr<double> parse_duration(std::string_view flag, std::string_view text) {
   constexpr std::array<std::pair<std::string_view, double>, 4> kUnits = {
       {{"ms", 1e-3}, {"s", 1.0}, {"m", 60.0}, {"h", 3600.0}}};
@@ -74,6 +81,15 @@ absl::StatusOr<Resolution> parse_resolution(std::string_view flag, std::string_v
     return invalid_input("{}: {} is out of range: 1 to {} pixels a side, at most {} in all", flag, text,
                          kMostImageEdge, kMostImagePixels);
   return Resolution{*width, *height};
+}
+
+absl::StatusOr<PixelPlace> parse_pixel(std::string_view flag, std::string_view text) {
+  const size_t comma = text.find(',');
+  const auto x = number<int>(text.substr(0, comma));
+  const auto y = comma == std::string_view::npos ? std::nullopt : number<int>(text.substr(comma + 1));
+  if (!x || !y || *x < 0 || *y < 0)
+    return invalid_input("{}: '{}' is not a pixel such as 128,134", flag, text);
+  return PixelPlace{*x, *y};
 }
 
 absl::StatusOr<PixelRect> parse_rect(std::string_view flag, std::string_view text) {

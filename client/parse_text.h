@@ -15,6 +15,8 @@ absl::StatusOr<int64_t> parse_whole(std::string_view flag, std::string_view text
 absl::StatusOr<uint64_t> parse_seed(std::string_view flag, std::string_view text);
 /// A finite number > 0.
 absl::StatusOr<double> parse_positive(std::string_view flag, std::string_view text);
+/// `5%` -> 0.05; finite, > 0.
+absl::StatusOr<double> parse_percent(std::string_view flag, std::string_view text);
 /// `500ms`, `30s`, `2m`, `1h` -> seconds, > 0.
 absl::StatusOr<double> parse_duration(std::string_view flag, std::string_view text);
 
@@ -23,6 +25,11 @@ struct Resolution {
 };
 /// `640x360`: at most kMostImageEdge a side and kMostImagePixels in all.
 absl::StatusOr<Resolution> parse_resolution(std::string_view flag, std::string_view text);
+struct PixelPlace {
+  int x = 0, y = 0;
+};
+/// `X,Y`, not negative.
+absl::StatusOr<PixelPlace> parse_pixel(std::string_view flag, std::string_view text);
 /// `X0,Y0,X1,Y1`, half-open, not empty, not negative.
 absl::StatusOr<PixelRect> parse_rect(std::string_view flag, std::string_view text);
 /// `NAME=X0,Y0,X1,Y1`.

@@ -15,12 +15,13 @@ struct RenderOptions {
   ServerOptions server;
   ClusterOptions cluster;
   OutputOptions output;
+  std::string display;
 };
 
 absl::StatusOr<FinishedRun> render(const RenderOptions& o, const std::string& folder, std::stop_token stop) {
   ASSIGN_OR_RETURN(const Submission submission, prepare(o.job));
   ASSIGN_OR_RETURN(const std::unique_ptr<Backend> backend, open_backend(o.server, o.cluster));
-  return run_job(*backend, submission, folder, o.output.quiet, stop);
+  return run_job(*backend, submission, folder, o.output.quiet, stop, o.display);
 }
 
 }  // namespace
@@ -32,6 +33,8 @@ void add_render(CLI::App& app, Chosen& chosen) {
   add_output_options(*command, options->output);
   add_cluster_options(*command, options->cluster);
   add_server_options(*command, options->server, false);
+  command->add_option("--display", options->display, "A tev that shows the pictures while they grow")
+      ->type_name("HOST:PORT");
   command->callback([options, &chosen] {
     chosen.run = [options](std::stop_token stop) {
       const OutputOptions& output = options->output;

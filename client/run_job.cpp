@@ -3,21 +3,14 @@
 #include <algorithm>
 #include <thread>
 
-#include "client/exit_code.h"
 #include "client/outcome.h"
+#include "client/preview.h"
 #include "client/progress.h"
+#include "client/quiet_run.h"
 #include "proto/status.h"
 
 namespace penumbra {
 namespace {
-
-absl::Status failure_of(const JobStatus& status) {
-  const auto code =
-      exit_code(status) == kExitBadInput ? absl::StatusCode::kInvalidArgument : absl::StatusCode::kAborted;
-  return make_status(
-      code, "{}",
-      status.message.empty() ? std::string("the job ") + std::string(name_of(status.state)) : status.message);
-}
 
 /// What the workers found in the scene that the client's own reading did not.
 void tell_new_warnings(const Json& run, const std::vector<std::string>& told, Progress& progress) {
@@ -35,8 +28,8 @@ void tell_new_warnings(const Json& run, const std::vector<std::string>& told, Pr
 
 absl::StatusOr<std::unique_ptr<Backend>> open_backend(const ServerOptions& options,
                                                       const ClusterOptions& cluster) {
-  auto backend = std::make_unique<Backend>();
   if (!options.address.empty()) {
+    auto backend = std::make_unique<Backend>();
     if (!cluster.workers.empty() || !cluster.threads.empty())
       return invalid_input(
           "--workers and --threads are for a local cluster; with --server they have no meaning");
@@ -44,9 +37,15 @@ absl::StatusOr<std::unique_ptr<Backend>> open_backend(const ServerOptions& optio
     backend->server.emplace(std::move(server));
     return backend;
   }
+  return open_local(cluster, "");
+}
+
+absl::StatusOr<std::unique_ptr<Backend>> open_local(const ClusterOptions& cluster,
+                                                    const std::string& programs) {
+  auto backend = std::make_unique<Backend>();
   const auto cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   ASSIGN_OR_RETURN(const ClusterSize size, cluster_size(cluster, cores));
-  ASSIGN_OR_RETURN(LocalCluster local, LocalCluster::start(size));
+  ASSIGN_OR_RETURN(LocalCluster local, LocalCluster::start(size, programs));
   backend->cluster.emplace(std::move(local));
   LocalCluster* const tended = &*backend->cluster;
   ASSIGN_OR_RETURN(Server server, Server::open(tended->address(), {}, [tended] { return tended->tend(); }));
@@ -55,8 +54,13 @@ absl::StatusOr<std::unique_ptr<Backend>> open_backend(const ServerOptions& optio
 }
 
 absl::StatusOr<FinishedRun> run_job(Backend& backend, const Submission& submission, const std::string& folder,
-                                    bool quiet, std::stop_token stop) {
+                                    bool quiet, std::stop_token stop, const std::string& display) {
   Server& server = *backend.server;
+  std::optional<Tev> tev;
+  if (!display.empty()) {
+    ASSIGN_OR_RETURN(Tev connected, Tev::connect(display));
+    tev.emplace(std::move(connected));
+  }
   Progress progress(Progress::style_for(quiet));
   for (const std::string& warning : submission.warnings) progress.note("warning: " + warning);
   RETURN_IF_ERROR(server.upload(submission.bundle, stop,
@@ -64,9 +68,11 @@ absl::StatusOr<FinishedRun> run_job(Backend& backend, const Submission& submissi
   ASSIGN_OR_RETURN(const JobId job, server.submit(submission.spec, stop));
 
   FinishedRun finished;
+  std::optional<Preview> preview;
+  if (tev) preview.emplace(server, job, *std::move(tev));
   const auto each = [&](const JobStatus& status) {
     progress.show(status);
-    return backend.cluster ? backend.cluster->tend() : absl::OkStatus();
+    return backend.tend();
   };
   absl::StatusOr<JobStatus> watched = server.watch(job, stop, each);
   finished.interrupted = watched.status().code() == absl::StatusCode::kCancelled && stop.stop_requested();
@@ -75,6 +81,7 @@ absl::StatusOr<FinishedRun> run_job(Backend& backend, const Submission& submissi
     watched = server.cancel(job);
   }
   progress.clear();
+  preview.reset();
   RETURN_IF_ERROR(watched.status());
   finished.last = *watched;
   const bool done = finished.last.state == JobState::kDone;

@@ -3,6 +3,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "client/auto_plan_json.h"
+#include "proto/auto_plan.h"
 #include "proto/status.h"
 
 namespace penumbra {
@@ -26,13 +28,34 @@ Json budget_ratio(const RunSummary& summary, const MixSummary& mix) {
 Json timeline_json(const MixSummary& mix, const MixRecord& record) {
   Json timeline = Json::array();
   for (size_t i = 0; i < mix.checkpoints.size(); ++i) {
-    Json relmse;
-    if (i < record.checkpoint_relmse.size()) relmse = or_null(record.checkpoint_relmse[i]);
+    CheckpointError error;
+    if (i < record.checkpoints.size()) error = record.checkpoints[i];
+    // The last point is the final image, whose own groups of passes say most.
+    if (i + 1 == mix.checkpoints.size() && record.own_error && mix.checkpoints[i].passes == mix.passes) {
+      error.estimated_relmse = record.own_error->relmse;
+      error.estimated_relmse_ci = record.own_error->relmse_ci;
+    }
     timeline.push_back({{"cpu_seconds", mix.checkpoints[i].cpu_seconds},
                         {"passes", mix.checkpoints[i].passes},
-                        {"relmse", relmse}});
+                        {"relmse", or_null(error.relmse)},
+                        {"relmse_ci", interval_json(error.relmse_ci)},
+                        {"estimated_relmse", or_null(error.estimated_relmse)},
+                        {"estimated_relmse_ci", interval_json(error.estimated_relmse_ci)}});
   }
   return timeline;
+}
+
+Json calibration_json(const Calibration& c) {
+  return {{"units", c.units},
+          {"seconds", c.seconds},
+          {"seconds_per_unit", c.units > 0 ? Json(c.seconds / static_cast<double>(c.units)) : Json(nullptr)}};
+}
+
+/// Six digits: the blocks are many, and their noise is far larger.
+Json blocks_json(const ErrorBlocks& blocks) {
+  Json relmse = Json::array();
+  for (const double value : blocks.relmse) relmse.push_back(std::stod(fmt::format("{:.6g}", value)));
+  return {{"edge", blocks.edge}, {"relmse", relmse}};
 }
 
 Json mix_json(const RunSummary& summary, const MixSummary& mix, const MixRecord& record) {
@@ -41,9 +64,11 @@ Json mix_json(const RunSummary& summary, const MixSummary& mix, const MixRecord&
     regions[name] = {{"rect", to_json(figures.region)},
                      {"relmse", figures.relmse},
                      {"relmse_ci", interval_json(figures.relmse_ci)},
+                     {"trimmed_relmse", figures.trimmed_relmse},
                      {"mse", figures.mse},
                      {"reference_floor", or_null(figures.reference_floor)}};
   const std::optional<ErrorFigures>& e = record.error;
+  const std::optional<OwnError>& own = record.own_error;
   return {{"mix", record.label},
           {"image", record.image},
           {"passes", mix.passes},
@@ -58,11 +83,21 @@ Json mix_json(const RunSummary& summary, const MixSummary& mix, const MixRecord&
           {"trimmed_relmse", e ? Json(e->trimmed_relmse) : Json(nullptr)},
           {"mse", e ? Json(e->mse) : Json(nullptr)},
           {"reference_floor", e ? or_null(e->reference_floor) : Json(nullptr)},
+          {"estimated_relmse", own ? Json(own->relmse) : Json(nullptr)},
+          {"estimated_relmse_ci", own ? interval_json(own->relmse_ci) : Json(nullptr)},
           {"regions", regions},
           {"timeline", timeline_json(mix, record)},
           {"planned_passes", mix.planned_passes},
           {"pilot_cpu_seconds", mix.pilot_cpu_seconds},
-          {"substitutions", mix.substitutions}};
+          {"substitutions", mix.substitutions},
+          {"calibration", calibration_json(mix.calibration)},
+          {"error_blocks", e ? blocks_json(e->blocks) : Json(nullptr)}};
+}
+
+Calibration total_calibration(const RunSummary& summary) {
+  Calibration total;
+  for (const MixSummary& mix : summary.mixes) total += mix.calibration;
+  return total;
 }
 
 Json needs_json(const RunSummary& summary) {
@@ -78,7 +113,8 @@ Json tiles_json(const RunSummary& summary) {
                      {"mix", row.mix},
                      {"passes", row.passes},
                      {"cpu_seconds", row.cpu_seconds},
-                     {"worker", row.worker}});
+                     {"worker", row.worker},
+                     {"calibration", calibration_json(row.calibration)}});
   return tiles;
 }
 
@@ -88,6 +124,16 @@ Json workers_json(const RunSummary& summary) {
     workers.push_back(
         {{"id", worker.id}, {"host", worker.host}, {"cores", worker.cores}, {"isa", worker.isa}});
   return workers;
+}
+
+Json faults_json(const FaultCounts& faults) {
+  return {{"lost_leases", faults.lost_leases},
+          {"overdue_leases", faults.overdue_leases},
+          {"late_results", faults.late_results},
+          {"refused_results", faults.refused_results},
+          {"failures", faults.failures},
+          {"returned_leases", faults.returned_leases},
+          {"corrupt_results", faults.corrupt_results}};
 }
 
 Json plan_json(const RunSummary& summary) {
@@ -122,9 +168,12 @@ Json run_json(const RunRecord& run) {
           {"first_result_seconds", s.first_result_seconds},
           {"worker_cpu_seconds", s.worker_cpu_seconds},
           {"retries", s.status.retries},
+          {"faults", faults_json(s.status.faults)},
           {"scheduler", {{"cpu_seconds", run.scheduler_cpu_seconds}}},
           {"warnings", s.load.warnings},
+          {"calibration", calibration_json(total_calibration(s))},
           {"plan", plan_json(s)},
+          {"auto_plans", auto_plans_json(s.spec, s.auto_plans)},
           {"spec", to_json(s.spec)}};
 }
 
@@ -137,6 +186,11 @@ absl::StatusOr<JobSpec> replay_spec(const Json& run) {
   } catch (const Json::exception& fault) {
     return invalid_input("plan: {}", fault.what());
   }
+  if (run.contains("auto_plans")) {
+    ASSIGN_OR_RETURN(spec.auto_plans, auto_plans_from_json(run["auto_plans"], spec));
+  }
+  if (spec.auto_plans.empty() && !automatic_mixes(spec.mixes).empty())
+    return invalid_input("auto_plans: none; the run ended before `auto` was planned");
   if (spec.plan.size() != spec.mixes.size())
     return invalid_input("plan: {} counts for {} mixes", spec.plan.size(), spec.mixes.size());
   for (const int64_t passes : spec.plan)

@@ -5,8 +5,10 @@
 #include <utility>
 #include <vector>
 
+#include "client/checkpoint_errors.h"
 #include "client/job_json.h"
 #include "film/metrics.h"
+#include "film/own_error.h"
 #include "proto/run.h"
 
 namespace penumbra {
@@ -17,7 +19,8 @@ struct MixRecord {
   std::string image;  ///< file name in the run's folder
   std::optional<ErrorFigures> error;
   std::vector<std::pair<std::string, ErrorFigures>> regions;
-  std::vector<std::optional<double>> checkpoint_relmse;  ///< parallel to MixSummary::checkpoints
+  std::optional<OwnError> own_error;         ///< of the final image
+  std::vector<CheckpointError> checkpoints;  ///< parallel to MixSummary::checkpoints; may be shorter
 };
 
 struct RunRecord {
@@ -28,8 +31,11 @@ struct RunRecord {
 };
 
 /// The run as the interface's schema 1, and more keys: `partial`, `state`, `reference`, `plan` (passes per
-/// mix), `spec` (enough to replay), `warnings`, `tiles`, `workers`, times of the phases. Figures that do
-/// not apply are null.
+/// mix), `auto_plans` (client/auto_plan_json.h), `spec` (enough to replay), `warnings`, `tiles`, `workers`,
+/// times of the phases; for `gate` the `calibration` (proto/job.h) of run, mixes and tiles, and each mix's
+/// `error_blocks`: relMSE of every block of a grid over the crop, row by row, `edge` pixels wide. `estimated_relmse`
+/// and its interval, of the final image and along the timeline: what relMSE the run itself expects
+/// (film/own_error.h). Figures that do not apply are null.
 Json run_json(const RunRecord& run);
 
 /// The job that renders the same bits again: the spec with the run's plan. InvalidArgument for a run.json

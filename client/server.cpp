@@ -78,9 +78,10 @@ absl::StatusOr<Server> Server::open(const std::string& address, const Credential
   return Server(std::move(parts));
 }
 
-absl::StatusOr<JobId> Server::submit(const JobSpec& spec, std::stop_token stop) {
+absl::StatusOr<JobId> Server::submit(const JobSpec& spec, std::stop_token stop, const JobTerms& terms) {
   v1::SubmitRequest request;
   *request.mutable_spec() = to_proto(spec);
+  *request.mutable_terms() = to_proto(terms);
   request.set_request_id(random_id());
   ASSIGN_OR_RETURN(const v1::SubmitResponse response,
                    parts_->unary(*parts_->render, &v1::Render::Stub::Submit, request, stop));
@@ -116,6 +117,19 @@ absl::StatusOr<std::vector<std::string>> Server::explain(const JobId& job, std::
   return std::vector<std::string>(response.reasons().begin(), response.reasons().end());
 }
 
+absl::StatusOr<std::vector<LogLine>> Server::log(const JobId& job, std::stop_token stop) {
+  v1::LogRequest request;
+  request.set_job(job);
+  ASSIGN_OR_RETURN(const v1::LogResponse response,
+                   parts_->unary(*parts_->render, &v1::Render::Stub::Log, request, stop));
+  std::vector<LogLine> lines;
+  for (const v1::LogResponse::Line& message : response.lines()) {
+    ASSIGN_OR_RETURN(LogLine line, from_proto(message));
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
 absl::StatusOr<JobStatus> Server::watch(const JobId& job, std::stop_token stop, const EachStatus& each) {
   JobStatus last;
   absl::Status ended;  // by `each`, or a message that is not understood
@@ -140,6 +154,23 @@ absl::StatusOr<JobStatus> Server::watch(const JobId& job, std::stop_token stop, 
   RETURN_IF_ERROR(call_with_retries(parts_->retry(stop), stop, kNoDeadline, follow));
   RETURN_IF_ERROR(ended);
   return last;
+}
+
+absl::StatusOr<RunSummary> Server::summary(const JobId& job, std::stop_token stop) {
+  v1::FetchFramesRequest request;
+  request.set_job(job);
+  request.set_summary_only(true);
+  v1::RunSummary summary;
+  const auto receive = [&](grpc::ClientContext& context, Retry& retry) {
+    const auto stream = parts_->render->FetchFrames(&context, request);
+    for (v1::FetchFramesResponse message; stream->Read(&message);) {
+      retry.answered();
+      if (message.has_summary()) summary.Swap(message.mutable_summary());
+    }
+    return stream->Finish();
+  };
+  RETURN_IF_ERROR(call_with_retries(parts_->retry(stop), stop, kNoDeadline, receive));
+  return from_proto(summary);
 }
 
 absl::StatusOr<FetchedRun> Server::fetch(const JobId& job, std::stop_token stop, const EachCheckpoint& each) {

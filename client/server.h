@@ -37,16 +37,22 @@ class Server {
   /// `progress` (sent, of).
   absl::Status upload(const LocalBundle& bundle, std::stop_token stop,
                       const std::function<void(uint64_t, uint64_t)>& progress = {});
-  absl::StatusOr<JobId> submit(const JobSpec& spec, std::stop_token stop);
+  absl::StatusOr<JobId> submit(const JobSpec& spec, std::stop_token stop, const JobTerms& terms = {});
   absl::StatusOr<JobStatus> status(const JobId& job, std::stop_token stop);
   absl::StatusOr<JobStatus> cancel(const JobId& job);
   absl::StatusOr<std::vector<JobStatus>> jobs(std::stop_token stop);
   absl::StatusOr<std::vector<std::string>> explain(const JobId& job, std::stop_token stop);
 
+  /// What became of a job's tasks, oldest first.
+  absl::StatusOr<std::vector<LogLine>> log(const JobId& job, std::stop_token stop);
+
   /// Follows a job to its end; each status is told to `each`, whose error ends the watching. The final
   /// status.
   using EachStatus = std::function<absl::Status(const JobStatus&)>;
   absl::StatusOr<JobStatus> watch(const JobId& job, std::stop_token stop, const EachStatus& each);
+
+  /// The outcome's figures until now, without any pixel.
+  absl::StatusOr<RunSummary> summary(const JobId& job, std::stop_token stop);
 
   /// The outcome until now. `each_checkpoint` (may be empty: then they are not sent) gets the cumulative
   /// RGB image of mix `mix` at summary.mixes[mix].checkpoints[checkpoint], possibly more than once.

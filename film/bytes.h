@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -45,13 +46,14 @@ class ByteReader {
     left_.remove_prefix(sizeof value);
     return true;
   }
-  /// `count` numbers; nothing is allocated before the bytes are known to be there.
+  /// `count` numbers where they lie; false if the bytes end before them. They must lie at a multiple of
+  /// their size, as everything does in a string whose fields before them are such multiples.
   template <class Number>
-  bool get(std::vector<Number>& values, uint64_t count) {
+  bool view(std::span<const Number>& values, uint64_t count) {
     static_assert(std::is_arithmetic_v<Number>);
     if (count > left_.size() / sizeof(Number)) return false;
-    values.resize(count);
-    if (count > 0) std::memcpy(values.data(), left_.data(), count * sizeof(Number));
+    if (reinterpret_cast<uintptr_t>(left_.data()) % alignof(Number) != 0) return false;
+    values = {reinterpret_cast<const Number*>(left_.data()), count};
     left_.remove_prefix(count * sizeof(Number));
     return true;
   }

@@ -11,7 +11,7 @@ Moments moments_at(const Frame& frame, size_t pixel, size_t channel) {
   return {frame.groups[pixel], static_cast<double>(frame.passes[pixel]), frame.mean[i], frame.m2[i]};
 }
 
-void merge_pixel(Frame& frame, size_t pixel, const TilePixels& tile, size_t source) {
+void merge_pixel(Frame& frame, size_t pixel, const TileView& tile, size_t source) {
   for (size_t c = 0; c < 3; ++c) {
     Moments sum = moments_at(frame, pixel, c);
     sum.merge(
@@ -42,7 +42,7 @@ Frame::Frame(int full_width, int full_height, const PixelRect& rect)
   cost.resize(pixels);
 }
 
-void merge(Frame& frame, const TilePixels& tile) {
+void merge(Frame& frame, const TileView& tile) {
   if (tile.passes == 0) return;
   PENUMBRA_CHECK(contains(frame.crop, tile.rect));
   const size_t stride = static_cast<size_t>(frame.crop.width());
@@ -54,20 +54,29 @@ void merge(Frame& frame, const TilePixels& tile) {
   }
 }
 
-FilmImage resolve(const Frame& frame) {
+namespace {
+
+FilmImage empty_image(const Frame& frame) {
   FilmImage image;
   image.width = frame.width;
   image.height = frame.height;
   image.window = frame.crop;
-  const size_t pixels = image.pixels();
-  image.rgb.reserve(3 * pixels);
-  image.variance.reserve(3 * pixels);
-  for (size_t p = 0; p < pixels; ++p)
-    for (size_t c = 0; c < 3; ++c) {
-      const Moments m = moments_at(frame, p, c);
-      image.rgb.push_back(static_cast<float>(m.mean));
-      image.variance.push_back(static_cast<float>(m.variance_of_mean()));
-    }
+  return image;
+}
+
+}  // namespace
+
+FilmImage resolve_rgb(const Frame& frame) {
+  FilmImage image = empty_image(frame);
+  image.rgb.assign(frame.mean.begin(), frame.mean.end());
+  return image;
+}
+
+FilmImage resolve(const Frame& frame) {
+  FilmImage image = resolve_rgb(frame);
+  image.variance.resize(image.rgb.size());
+  for (size_t i = 0; i < image.variance.size(); ++i)
+    image.variance[i] = static_cast<float>(moments_at(frame, i / 3, i % 3).variance_of_mean());
   image.samples.assign(frame.passes.begin(), frame.passes.end());
   image.cost.assign(frame.cost.begin(), frame.cost.end());
   return image;

@@ -26,10 +26,12 @@ struct Frame {
 
 /// Adds a tile, which must lie in the crop. The image is a function of the sequence of merges: for
 /// bit-identity call it in the order of task ids, whatever the order of arrival.
-void merge(Frame& frame, const TilePixels& tile);
+void merge(Frame& frame, const TileView& tile);
 
 /// Mean, variance of the mean, samples and cost in single precision. Pixels without a pass are black
 /// with 0 samples.
 FilmImage resolve(const Frame& frame);
+/// Only the mean: all that a checkpoint shows.
+FilmImage resolve_rgb(const Frame& frame);
 
 }  // namespace penumbra

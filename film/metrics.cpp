@@ -2,59 +2,73 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numeric>
 #include <vector>
 
+#include "film/estimate.h"
 #include "proto/status.h"
 
 namespace penumbra {
 namespace {
 
-constexpr double kConfidence = 0.95;
 constexpr double kTrimmedShare = 1e-3;
-constexpr int kResamples = 2000;
-constexpr uint64_t kSeed = 0x70656e756d627261;  // "penumbra"
+constexpr double kConfidence = 0.95;
+// Edge of the cells within which pixels count as equally hard.
+constexpr int kCellEdge = 2;
+constexpr int kLeastBlockEdge = 4;
+constexpr int64_t kMostBlocks = 1024;
 
-/// SplitMix64 (Steele, Lea & Flood 2014): a stream good enough to draw blocks.
-class SplitMix {
- public:
-  uint64_t next() {
-    uint64_t z = state_ += 0x9e3779b97f4a7c15;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
-    return z ^ (z >> 31);
+/// Errors of the pixels of a region, row by row.
+struct PixelErrors {
+  PixelRect region;
+  std::vector<double> relative;
+
+  double at(int x, int y) const {
+    return relative[static_cast<size_t>(y - region.y0) * static_cast<size_t>(region.width()) +
+                    static_cast<size_t>(x - region.x0)];
   }
-  /// Uniform in [0, n), n < 2^32; biased by less than n / 2^32.
-  size_t below(size_t n) { return static_cast<size_t>((next() >> 32) * n >> 32); }
-
- private:
-  uint64_t state_ = kSeed;
 };
 
-struct BlockError {
-  double sum = 0;  ///< of the pixels' errors
-  double pixels = 0;
-};
+/// Sum and standard error of the pixels of each cell: appends deviations whose squares sum up to the
+/// variance of Σ e_p. Of n pixels Σ (e - mean)² n/(n - 1) is n s².
+void append_deviations(const PixelErrors& errors, const PixelRect& cell, std::vector<double>& deviations) {
+  const auto n = static_cast<double>(cell.area());
+  double sum = 0;
+  for (int y = cell.y0; y < cell.y1; ++y)
+    for (int x = cell.x0; x < cell.x1; ++x) sum += errors.at(x, y);
+  // A cell cut to one pixel by the region's edge has no neighbour: its square bounds its variance.
+  const double mean = n > 1 ? sum / n : 0, scale = n > 1 ? std::sqrt(n / (n - 1)) : 1;
+  for (int y = cell.y0; y < cell.y1; ++y)
+    for (int x = cell.x0; x < cell.x1; ++x) deviations.push_back((errors.at(x, y) - mean) * scale);
+}
 
-/// Percentile interval of the ratio sum / pixels under resampling of whole blocks.
-std::optional<ConfidenceInterval> bootstrap(const std::vector<BlockError>& blocks) {
-  if (blocks.size() < 2) return std::nullopt;
-  SplitMix random;
-  std::vector<double> means;
-  means.reserve(kResamples);
-  for (int r = 0; r < kResamples; ++r) {
-    BlockError total;
-    for (size_t i = 0; i < blocks.size(); ++i) {
-      const BlockError& drawn = blocks[random.below(blocks.size())];
-      total.sum += drawn.sum;
-      total.pixels += drawn.pixels;
-    }
-    means.push_back(total.sum / total.pixels);
+std::optional<ConfidenceInterval> interval_of(const PixelErrors& errors, double total) {
+  if (errors.relative.size() < 2 || !(total > 0)) return std::nullopt;
+  std::vector<double> deviations;
+  deviations.reserve(errors.relative.size());
+  for (const PixelRect& cell : block_grid(errors.region, kCellEdge))
+    append_deviations(errors, cell, deviations);
+  double squares = 0;
+  for (const double d : deviations) squares += d * d;
+  const double pixels = static_cast<double>(errors.relative.size());
+  return exp_interval({std::log(total / pixels), std::sqrt(squares) / total, degrees_behind(deviations)},
+                      kConfidence);
+}
+
+ErrorBlocks blocks_of(const PixelErrors& errors) {
+  ErrorBlocks blocks;
+  blocks.edge = kLeastBlockEdge;
+  const auto count = [&](int64_t edge) {
+    return ((errors.region.width() + edge - 1) / edge) * ((errors.region.height() + edge - 1) / edge);
+  };
+  while (count(blocks.edge) > kMostBlocks) blocks.edge *= 2;
+  for (const PixelRect& rect : block_grid(errors.region, blocks.edge)) {
+    double sum = 0;
+    for (int y = rect.y0; y < rect.y1; ++y)
+      for (int x = rect.x0; x < rect.x1; ++x) sum += errors.at(x, y);
+    blocks.relmse.push_back(sum / static_cast<double>(rect.area()));
   }
-  std::sort(means.begin(), means.end());
-  const auto at = [&](double p) { return means[static_cast<size_t>(std::lround(p * (kResamples - 1)))]; };
-  return ConfidenceInterval{at((1 - kConfidence) / 2), at((1 + kConfidence) / 2)};
+  return blocks;
 }
 
 /// Mean of the values but for the largest `share` of them (at least one is kept).
@@ -119,29 +133,24 @@ absl::StatusOr<ErrorFigures> compare(const FilmImage& image, const FilmImage& re
   ErrorFigures figures;
   figures.region = region.value_or(image.window);
   RETURN_IF_ERROR(check_region(image, reference, figures.region));
-  std::vector<BlockError> block_errors;
-  std::vector<double> relative;
+  PixelErrors errors{figures.region, {}};
+  errors.relative.reserve(static_cast<size_t>(figures.region.area()));
   PixelError total;
-  for (const PixelRect& rect : block_grid(figures.region)) {
-    BlockError block;
-    for (int y = rect.y0; y < rect.y1; ++y)
-      for (int x = rect.x0; x < rect.x1; ++x) {
-        const PixelError e = pixel_error(image, reference, x, y, epsilon);
-        relative.push_back(e.relative);
-        block.sum += e.relative;
-        total.squared += e.squared;
-        total.floor += e.floor;
-      }
-    block.pixels = static_cast<double>(rect.area());
-    total.relative += block.sum;
-    block_errors.push_back(block);
-  }
+  for (int y = figures.region.y0; y < figures.region.y1; ++y)
+    for (int x = figures.region.x0; x < figures.region.x1; ++x) {
+      const PixelError e = pixel_error(image, reference, x, y, epsilon);
+      errors.relative.push_back(e.relative);
+      total.relative += e.relative;
+      total.squared += e.squared;
+      total.floor += e.floor;
+    }
   const auto pixels = static_cast<double>(figures.region.area());
   figures.relmse = total.relative / pixels;
   figures.mse = total.squared / pixels;
   if (!reference.variance.empty()) figures.reference_floor = total.floor / pixels;
-  figures.relmse_ci = bootstrap(block_errors);
-  figures.trimmed_relmse = trimmed_mean(std::move(relative), kTrimmedShare);
+  figures.relmse_ci = interval_of(errors, total.relative);
+  figures.blocks = blocks_of(errors);
+  figures.trimmed_relmse = trimmed_mean(std::move(errors.relative), kTrimmedShare);
   return figures;
 }
 

@@ -20,7 +20,20 @@ struct Moments {
   ///   mean = mean_a + d w_b / W,   m2 = m2_a + m2_b + d² w_a w_b / W.
   /// The result of any split equals the whole to rounding, and is the same bits for the same order of
   /// merges.
-  void merge(const Moments& other);
+  void merge(const Moments& other) {
+    if (other.groups == 0) return;
+    if (groups == 0) {  // exactly the other, with no rounding
+      *this = other;
+      return;
+    }
+    const double total = weight + other.weight;
+    const double distance = other.mean - mean;
+    const double share = other.weight / total;
+    mean += distance * share;
+    m2 += other.m2 + distance * distance * weight * share;
+    weight = total;
+    groups += other.groups;
+  }
 
   /// Variance of `mean`; 0 with fewer than two groups. A group of w passes has variance s²/w, so that
   /// E[m2] = (groups - 1) s², and the mean of W passes has variance s²/W = m2 / ((groups - 1) W).

@@ -1,6 +1,8 @@
 #pragma once
 // What a worker hands back for one mix of a tile task, and what the assembler merges.
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,15 +29,38 @@ struct TileResult {
   std::vector<TilePixels> mixes;
 };
 
+/// The same, lying in somebody else's memory.
+struct TileView {
+  TileView() = default;
+  TileView(const TilePixels& p)  // implicit: whoever takes a view takes the pixels themselves
+      : rect(p.rect), passes(p.passes), groups(p.groups), mean(p.mean), m2(p.m2), cost(p.cost) {}
+  PixelRect rect;
+  int64_t passes = 0, groups = 0;
+  std::span<const float> mean, m2, cost;
+};
+
 /// Empty if the shapes agree and every value is finite (m2 and cost not negative), else what is wrong.
 /// What the serialisation demands, for whoever builds a TileResult or accepts one.
-std::string fault_of(const TilePixels& pixels);
+std::string fault_of(const TileView& pixels);
 
 /// Bytes of a result: `PNTR`, then little-endian: version u32, number of mixes u32; per mix x0 y0 x1 y1 i32,
 /// passes i64, groups i64, and with passes > 0 the float arrays mean, m2, cost, whose lengths follow from
 /// the rect. A result with a fault is a programmer's fault.
 std::string serialize(const TileResult& result);
-/// InvalidArgument for bytes that are not a result, whose shapes disagree, or with a non-finite value.
-absl::StatusOr<TileResult> parse_tile_result(std::string_view bytes);
+
+/// A result as it came: its bytes, and where in them each mix lies. Nothing is copied: a server sees
+/// hundreds of megabytes of them for one picture.
+class ReceivedTile {
+ public:
+  /// InvalidArgument for bytes that are not a result, whose shapes disagree, or with a non-finite value.
+  static absl::StatusOr<ReceivedTile> parse(std::string bytes);
+  const std::vector<TileView>& mixes() const { return mixes_; }
+
+ private:
+  ReceivedTile() = default;
+  absl::Status read();
+  std::unique_ptr<const std::string> bytes_;  // where the views point, wherever the object is moved
+  std::vector<TileView> mixes_;
+};
 
 }  // namespace penumbra

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -81,6 +82,12 @@ absl::Status sync_path(const std::string& path) {
 absl::Status rename_to(const std::string& from, const std::string& to) {
   if (::rename(from.c_str(), to.c_str()) != 0) return system_error("renaming to", to);
   return absl::OkStatus();
+}
+
+/// A file whose bytes no longer have its name goes, so that it can be stored anew.
+absl::Status corrupt(const std::string& path) {
+  ::unlink(path.c_str());
+  return make_status(absl::StatusCode::kDataLoss, "{}: its bytes no longer have the digest; removed", path);
 }
 
 void remove_stale(const std::string& folder) {
@@ -162,28 +169,70 @@ absl::StatusOr<std::string> BlobFolder::read_unverified(const Digest& digest) co
   const File file(path, O_RDONLY);
   struct stat info {};
   if (!file.ok() || ::fstat(file.get(), &info) != 0) return system_error("blob", path);
-  std::string bytes;
-  bytes.reserve(static_cast<size_t>(info.st_size));
-  RETURN_IF_ERROR(read_pieces(file.get(), static_cast<uint64_t>(info.st_size), path,
-                              [&](std::string_view piece) { bytes += piece; }));
+  std::string bytes(static_cast<size_t>(info.st_size), '\0');
+  for (size_t offset = 0; offset < bytes.size();) {
+    const ssize_t n =
+        ::pread(file.get(), bytes.data() + offset, bytes.size() - offset, static_cast<off_t>(offset));
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return system_error("reading", path);
+    if (n == 0) return make_status(absl::StatusCode::kDataLoss, "{}: ends early", path);
+    offset += static_cast<size_t>(n);
+  }
   return bytes;
 }
 
 absl::StatusOr<std::string> BlobFolder::read(const Digest& digest) const {
   ASSIGN_OR_RETURN(std::string bytes, read_unverified(digest));
-  Sha256 hash;
-  hash.add(bytes);
-  if (hash.hex() == digest) return bytes;
+  if (sha256(bytes) == digest) return bytes;
+  return corrupt(path_of(digest));
+}
+
+absl::Status BlobFolder::verify(const Digest& digest) const {
   const std::string path = path_of(digest);
-  ::unlink(path.c_str());
-  return make_status(absl::StatusCode::kDataLoss, "{}: its bytes no longer have the digest; removed", path);
+  const File file(path, O_RDONLY);
+  struct stat info {};
+  if (!file.ok() || ::fstat(file.get(), &info) != 0) return system_error("blob", path);
+  Sha256 hash;
+  RETURN_IF_ERROR(read_pieces(file.get(), static_cast<uint64_t>(info.st_size), path,
+                              [&](std::string_view piece) { hash.add(piece); }));
+  return hash.hex() == digest ? absl::OkStatus() : corrupt(path);
+}
+
+bool BlobFolder::touch(const Digest& digest) const {
+  return ::utimensat(AT_FDCWD, path_of(digest).c_str(), nullptr, 0) == 0;
+}
+
+absl::Status BlobFolder::each(const std::function<void(const BlobFile&)>& visit) const {
+  timespec now{};
+  ::clock_gettime(CLOCK_REALTIME, &now);
+  for (int prefix = 0; prefix < 256; ++prefix) {
+    const std::string folder = fmt::format("{}/{:02x}", root_, prefix);
+    std::error_code error;
+    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+      const std::string name = it->path().filename();
+      struct stat info {};
+      if (!is_digest(name) || ::stat(it->path().c_str(), &info) != 0) continue;  // gone meanwhile
+      visit(
+          {name, static_cast<uint64_t>(info.st_size), static_cast<double>(now.tv_sec - info.st_mtim.tv_sec)});
+    }
+    if (error) return make_status(absl::StatusCode::kInternal, "reading {}: {}", folder, error.message());
+  }
+  return absl::OkStatus();
+}
+
+void BlobFolder::remove(const Digest& digest) const {
+  ::unlink(path_of(digest).c_str());
+}
+
+uint64_t BlobFolder::free_bytes() const {
+  struct statvfs info {};
+  if (::statvfs(root_.c_str(), &info) != 0) return 0;
+  return static_cast<uint64_t>(info.f_bavail) * info.f_frsize;
 }
 
 absl::Status BlobFolder::put(const Digest& digest, std::string_view bytes) const {
   if (!is_digest(digest)) return invalid_input("'{:.80}' is not a digest", digest);
-  Sha256 hash;
-  hash.add(bytes);
-  if (hash.hex() != digest) return invalid_input("blob {}: its bytes have another digest", digest);
+  if (sha256(bytes) != digest) return invalid_input("blob {}: its bytes have another digest", digest);
   if (size(digest) == bytes.size()) return absl::OkStatus();
   static std::atomic<uint64_t> counter{0};
   const std::string temporary = fmt::format("{}/partial/put-{}-{}", root_, ::getpid(), counter++);

@@ -3,6 +3,7 @@
 // and the workers' cache. What is there under a digest has that digest: bytes are written to a temporary
 // name, verified, made durable and renamed.
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -49,6 +50,13 @@ class BlobWriter {
   Sha256 hash_;
 };
 
+/// A blob as it lies in its folder.
+struct BlobFile {
+  Digest digest;
+  uint64_t bytes = 0;
+  double age_seconds = 0;  ///< since it was written or last touched
+};
+
 /// Safe for several threads and for several processes that share the folder.
 class BlobFolder {
  public:
@@ -68,6 +76,18 @@ class BlobFolder {
   /// The whole blob, verified. NotFound; DataLoss if the bytes no longer have the digest: the file is then
   /// removed, so that it can be stored anew.
   absl::StatusOr<std::string> read(const Digest& digest) const;
+
+  /// Reads the blob and compares. As read(), without keeping the bytes.
+  absl::Status verify(const Digest& digest) const;
+
+  /// Says that somebody still counts on the blob; false if it is not there.
+  bool touch(const Digest& digest) const;
+  /// Visits every blob, in no order.
+  absl::Status each(const std::function<void(const BlobFile&)>& visit) const;
+  /// Removes a blob; harmless if it is not there.
+  void remove(const Digest& digest) const;
+  /// Bytes that the disk of the folder has left for us; 0 if it does not say.
+  uint64_t free_bytes() const;
 
   /// Stores bytes; harmless if they are there. Durable only after sync().
   absl::Status put(const Digest& digest, std::string_view bytes) const;

@@ -60,6 +60,8 @@ absl::StatusOr<std::string> read_token(const std::string& path) {
   ASSIGN_OR_RETURN(std::string token, read_credential("--token-file", path));
   while (!token.empty() && (token.back() == '\n' || token.back() == '\r')) token.pop_back();
   if (token.empty()) return invalid_input("--token-file: {}: holds no token", path);
+  if (token.find_first_of(" \t\r\n") != std::string::npos)
+    return invalid_input("--token-file: {}: holds more than one token; only the server's file may", path);
   return token;
 }
 

@@ -119,6 +119,42 @@ absl::StatusOr<PixelRect> from_proto(const v1::PixelRect& rect) {
   return PixelRect{rect.x0(), rect.y0(), rect.x1(), rect.y1()};
 }
 
+v1::Probe to_proto(const Probe& probe) {
+  v1::Probe out;
+  out.set_kind(probe.kind == Probe::Kind::kVariance ? v1::Probe::KIND_VARIANCE : v1::Probe::KIND_INTEGRAND);
+  out.set_camera_width(probe.camera_width);
+  out.set_camera_height(probe.camera_height);
+  out.set_x(probe.x);
+  out.set_y(probe.y);
+  out.set_light(probe.light);
+  out.mutable_slots()->Add(probe.slots.begin(), probe.slots.end());
+  return out;
+}
+
+absl::StatusOr<Probe> from_proto(const v1::Probe& message) {
+  Probe probe;
+  if (message.kind() == v1::Probe::KIND_VARIANCE) return probe;
+  if (message.kind() != v1::Probe::KIND_INTEGRAND)
+    return invalid_input("probe.kind: unknown value {}", static_cast<int>(message.kind()));
+  probe.kind = Probe::Kind::kIntegrand;
+  RETURN_IF_ERROR(check_range("probe.camera_width", message.camera_width(), 1, kMostEdge));
+  RETURN_IF_ERROR(check_range("probe.camera_height", message.camera_height(), 1, kMostEdge));
+  RETURN_IF_ERROR(check_range("probe.x", message.x(), 0, message.camera_width() - 1));
+  RETURN_IF_ERROR(check_range("probe.y", message.y(), 0, message.camera_height() - 1));
+  RETURN_IF_ERROR(check_range("probe.light", message.light(), 0, std::numeric_limits<int>::max()));
+  RETURN_IF_ERROR(check_range("probe.slots", message.slots_size(), 1, kMostMixes));
+  probe.camera_width = message.camera_width();
+  probe.camera_height = message.camera_height();
+  probe.x = message.x();
+  probe.y = message.y();
+  probe.light = message.light();
+  for (const int slot : message.slots()) {
+    RETURN_IF_ERROR(check_range("probe.slots", slot, 0, kMostMixes - 1));
+    probe.slots.push_back(slot);
+  }
+  return probe;
+}
+
 v1::JobSpec to_proto(const JobSpec& spec) {
   v1::JobSpec out;
   out.set_scene(spec.scene);
@@ -135,12 +171,14 @@ v1::JobSpec to_proto(const JobSpec& spec) {
   out.set_seed(spec.seed);
   out.set_strict(spec.strict);
   out.mutable_plan()->Add(spec.plan.begin(), spec.plan.end());
+  for (const AutoPlan& plan : spec.auto_plans) *out.add_auto_plans() = to_proto(plan);
   out.set_reference(spec.reference);
   for (const Region& region : spec.regions) {
     v1::Region* added = out.add_regions();
     added->set_name(region.name);
     *added->mutable_rect() = to_proto(region.rect);
   }
+  if (spec.probe) *out.mutable_probe() = to_proto(*spec.probe);
   return out;
 }
 
@@ -162,8 +200,16 @@ absl::StatusOr<JobSpec> from_proto(const v1::JobSpec& message) {
   spec.seed = message.seed();
   spec.strict = message.strict();
   ASSIGN_OR_RETURN(spec.plan, passes_from_proto("plan", message.plan()));
+  ASSIGN_OR_RETURN(spec.auto_plans, auto_plans_from_proto(message.auto_plans(), spec.mixes));
+  if (spec.plan.empty() != spec.auto_plans.empty() && !automatic_mixes(spec.mixes).empty())
+    return invalid_input("plan: passes and the plans of `auto` belong together");
   spec.reference = message.reference();
   ASSIGN_OR_RETURN(spec.regions, regions_from_proto(message));
+  if (message.has_probe()) {
+    ASSIGN_OR_RETURN(spec.probe, from_proto(message.probe()));
+    if (spec.probe->kind == Probe::Kind::kIntegrand && spec.probe->slots.size() != spec.mixes.size())
+      return invalid_input("probe.slots: {} for {} mixes", spec.probe->slots.size(), spec.mixes.size());
+  }
   RETURN_IF_ERROR(check_spec(spec));
   return spec;
 }
@@ -181,6 +227,8 @@ v1::TileTask to_proto(const TileTask& task) {
   out.set_group(task.group);
   out.set_shuffle(task.shuffle);
   out.set_pilot_seconds(task.pilot_seconds);
+  for (const ChosenMix& chosen : task.chosen) *out.add_chosen() = to_proto(chosen);
+  out.set_pilot_blocks(task.pilot_blocks);
   return out;
 }
 
@@ -203,6 +251,11 @@ absl::StatusOr<TileTask> from_proto(const v1::TileTask& message) {
   task.shuffle = message.shuffle();
   RETURN_IF_ERROR(check_amount("pilot_seconds", message.pilot_seconds()));
   task.pilot_seconds = message.pilot_seconds();
+  ASSIGN_OR_RETURN(task.chosen, list_from_proto<ChosenMix>("chosen", message.chosen()));
+  for (const ChosenMix& chosen : task.chosen)
+    RETURN_IF_ERROR(check_range("chosen.mix", chosen.mix, 0, message.passes_size() - 1));
+  RETURN_IF_ERROR(check_range("pilot_blocks", message.pilot_blocks(), 0, kMostTile * kMostTile));
+  task.pilot_blocks = message.pilot_blocks();
   return task;
 }
 

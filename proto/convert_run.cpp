@@ -66,6 +66,18 @@ static v1::FailureKind to_proto(FailureKind kind) {
   std::abort();
 }
 
+v1::Calibration to_proto(const Calibration& calibration) {
+  v1::Calibration out;
+  out.set_units(calibration.units);
+  out.set_seconds(calibration.seconds);
+  return out;
+}
+
+absl::StatusOr<Calibration> from_proto(const v1::Calibration& message) {
+  RETURN_IF_ERROR(check_amount("calibration.seconds", message.seconds()));
+  return Calibration{message.units(), message.seconds()};
+}
+
 v1::MixSummary to_proto(const MixSummary& mix) {
   v1::MixSummary out;
   out.set_mix(label(mix.mix));
@@ -76,6 +88,7 @@ v1::MixSummary to_proto(const MixSummary& mix) {
   out.set_line_queries(mix.line_queries);
   out.set_non_finite(mix.non_finite);
   out.set_pilot_cpu_seconds(mix.pilot_cpu_seconds);
+  *out.mutable_calibration() = to_proto(mix.calibration);
   for (const std::string& text : mix.substitutions) out.add_substitutions(text);
   for (const Checkpoint& checkpoint : mix.checkpoints) {
     v1::MixSummary::Checkpoint* added = out.add_checkpoints();
@@ -99,6 +112,7 @@ absl::StatusOr<MixSummary> from_proto(const v1::MixSummary& message) {
   mix.line_queries = message.line_queries();
   mix.non_finite = message.non_finite();
   mix.pilot_cpu_seconds = message.pilot_cpu_seconds();
+  ASSIGN_OR_RETURN(mix.calibration, from_proto(message.calibration()));
   ASSIGN_OR_RETURN(mix.substitutions, texts_from_proto("substitutions", message.substitutions()));
   for (const v1::MixSummary::Checkpoint& checkpoint : message.checkpoints()) {
     RETURN_IF_ERROR(check_range<int64_t>("checkpoints.passes", checkpoint.passes(), 0, kMostPasses));
@@ -115,6 +129,7 @@ v1::TileRow to_proto(const TileRow& row) {
   out.set_passes(row.passes);
   out.set_cpu_seconds(row.cpu_seconds);
   out.set_worker(row.worker);
+  *out.mutable_calibration() = to_proto(row.calibration);
   return out;
 }
 
@@ -124,6 +139,7 @@ absl::StatusOr<TileRow> from_proto(const v1::TileRow& message) {
   RETURN_IF_ERROR(check_range<int64_t>("tiles.passes", message.passes(), 0, kMostPasses));
   RETURN_IF_ERROR(check_amount("tiles.cpu_seconds", message.cpu_seconds()));
   RETURN_IF_ERROR(check_text("tiles.worker", message.worker()));
+  ASSIGN_OR_RETURN(row.calibration, from_proto(message.calibration()));
   row.mix = message.mix();
   row.passes = message.passes();
   row.cpu_seconds = message.cpu_seconds();
@@ -139,6 +155,11 @@ v1::MixCost to_proto(const MixCost& cost) {
   out.set_line_queries(cost.line_queries);
   out.set_non_finite(cost.non_finite);
   out.set_relative_variance(cost.relative_variance);
+  *out.mutable_calibration() = to_proto(cost.calibration);
+  out.set_pixels(cost.pixels);
+  out.set_relative_variance_squares(cost.relative_variance_squares);
+  out.set_work(cost.work);
+  out.set_overhead_seconds(cost.overhead_seconds);
   return out;
 }
 
@@ -146,13 +167,22 @@ absl::StatusOr<MixCost> from_proto(const v1::MixCost& message) {
   RETURN_IF_ERROR(check_range<int64_t>("costs.passes", message.passes(), 0, kMostPasses));
   RETURN_IF_ERROR(check_amount("costs.cpu_seconds", message.cpu_seconds()));
   RETURN_IF_ERROR(check_amount("costs.relative_variance", message.relative_variance()));
+  RETURN_IF_ERROR(check_range<int64_t>("costs.pixels", message.pixels(), 0, int64_t{1} << 32));
+  RETURN_IF_ERROR(check_amount("costs.relative_variance_squares", message.relative_variance_squares()));
+  RETURN_IF_ERROR(check_amount("costs.work", message.work()));
+  RETURN_IF_ERROR(check_amount("costs.overhead_seconds", message.overhead_seconds()));
   MixCost cost;
+  ASSIGN_OR_RETURN(cost.calibration, from_proto(message.calibration()));
   cost.passes = message.passes();
   cost.cpu_seconds = message.cpu_seconds();
   cost.rays = message.rays();
   cost.line_queries = message.line_queries();
   cost.non_finite = message.non_finite();
   cost.relative_variance = message.relative_variance();
+  cost.pixels = message.pixels();
+  cost.relative_variance_squares = message.relative_variance_squares();
+  cost.work = message.work();
+  cost.overhead_seconds = message.overhead_seconds();
   return cost;
 }
 
@@ -201,6 +231,71 @@ absl::StatusOr<WorkerInfo> from_proto(const v1::WorkerInfo& message) {
   return WorkerInfo{message.id(), message.host(), message.isa(), message.cores()};
 }
 
+static v1::Faults to_proto(const FaultCounts& faults) {
+  v1::Faults out;
+  out.set_lost_leases(faults.lost_leases);
+  out.set_overdue_leases(faults.overdue_leases);
+  out.set_late_results(faults.late_results);
+  out.set_refused_results(faults.refused_results);
+  out.set_failures(faults.failures);
+  out.set_returned_leases(faults.returned_leases);
+  out.set_corrupt_results(faults.corrupt_results);
+  return out;
+}
+
+static FaultCounts from_proto(const v1::Faults& message) {
+  return {message.lost_leases(),     message.overdue_leases(), message.late_results(),
+          message.refused_results(), message.failures(),       message.returned_leases(),
+          message.corrupt_results()};
+}
+
+v1::JobTerms to_proto(const JobTerms& terms) {
+  v1::JobTerms out;
+  out.set_user(terms.user);
+  out.set_priority(terms.priority);
+  for (const std::string& label : terms.labels) out.add_labels(label);
+  for (const JobId& job : terms.after) out.add_after(job);
+  return out;
+}
+
+absl::StatusOr<JobTerms> from_proto(const v1::JobTerms& message) {
+  constexpr int kMostPriority = 100, kMostListed = 64;
+  constexpr size_t kMostName = 256;
+  JobTerms terms;
+  if (message.user().size() > kMostName) return invalid_input("user: longer than {} bytes", kMostName);
+  RETURN_IF_ERROR(check_range("priority", message.priority(), -kMostPriority, kMostPriority));
+  if (message.labels_size() > kMostListed) return invalid_input("labels: more than {}", kMostListed);
+  if (message.after_size() > kMostListed) return invalid_input("after: more than {}", kMostListed);
+  for (const std::string& label : message.labels())
+    if (label.size() > kMostName || label.find('=') == 0 || label.find('=') == std::string::npos)
+      return invalid_input("labels: '{:.80}' is not of the form KEY=VALUE", label);
+  for (const std::string& job : message.after())
+    if (job.empty() || job.size() > kMostName) return invalid_input("after: '{:.80}' is not a job", job);
+  terms.user = message.user();
+  terms.priority = message.priority();
+  terms.labels = {message.labels().begin(), message.labels().end()};
+  terms.after = {message.after().begin(), message.after().end()};
+  return terms;
+}
+
+v1::LogResponse::Line to_proto(const LogLine& line) {
+  v1::LogResponse::Line out;
+  out.set_unix_seconds(line.unix_seconds);
+  if (line.task) out.set_task(*line.task);
+  out.set_worker(line.worker);
+  out.set_text(line.text);
+  return out;
+}
+
+absl::StatusOr<LogLine> from_proto(const v1::LogResponse::Line& message) {
+  RETURN_IF_ERROR(check_amount("unix_seconds", message.unix_seconds()));
+  RETURN_IF_ERROR(check_text("worker", message.worker()));
+  RETURN_IF_ERROR(check_text("text", message.text()));
+  LogLine line{message.unix_seconds(), std::nullopt, message.worker(), message.text()};
+  if (message.has_task()) line.task = message.task();
+  return line;
+}
+
 v1::JobStatus to_proto(const JobStatus& status) {
   v1::JobStatus out;
   out.set_job(status.job);
@@ -220,6 +315,8 @@ v1::JobStatus to_proto(const JobStatus& status) {
   out.set_retries(status.retries);
   out.set_scene(status.scene);
   out.set_submitted_unix_seconds(status.submitted_unix_seconds);
+  *out.mutable_faults() = to_proto(status.faults);
+  *out.mutable_terms() = to_proto(status.terms);
   return out;
 }
 
@@ -247,6 +344,8 @@ absl::StatusOr<JobStatus> from_proto(const v1::JobStatus& message) {
   status.retries = message.retries();
   status.scene = message.scene();
   status.submitted_unix_seconds = message.submitted_unix_seconds();
+  status.faults = from_proto(message.faults());
+  ASSIGN_OR_RETURN(status.terms, from_proto(message.terms()));
   return status;
 }
 
@@ -262,6 +361,7 @@ v1::RunSummary to_proto(const RunSummary& summary) {
   out.set_render_wall_seconds(summary.render_wall_seconds);
   out.set_total_wall_seconds(summary.total_wall_seconds);
   out.set_first_result_seconds(summary.first_result_seconds);
+  for (const AutoPlan& plan : summary.auto_plans) *out.add_auto_plans() = to_proto(plan);
   return out;
 }
 
@@ -272,6 +372,7 @@ absl::StatusOr<RunSummary> from_proto(const v1::RunSummary& message) {
   ASSIGN_OR_RETURN(summary.mixes, list_from_proto<MixSummary>("mixes", message.mixes()));
   if (summary.mixes.size() != summary.spec.mixes.size())
     return invalid_input("mixes: {} summaries for {} mixes", summary.mixes.size(), summary.spec.mixes.size());
+  ASSIGN_OR_RETURN(summary.auto_plans, auto_plans_from_proto(message.auto_plans(), summary.spec.mixes));
   ASSIGN_OR_RETURN(summary.tiles, list_from_proto<TileRow>("tiles", message.tiles()));
   for (const TileRow& row : summary.tiles)
     RETURN_IF_ERROR(check_range("tiles.mix", row.mix, 0, static_cast<int>(summary.mixes.size()) - 1));

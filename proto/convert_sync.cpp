@@ -25,6 +25,8 @@ static v1::SyncRequest::Failed::Reason to_proto(TaskFailure reason) {
       return v1::SyncRequest::Failed::REASON_ERROR;
     case TaskFailure::kReturned:
       return v1::SyncRequest::Failed::REASON_RETURNED;
+    case TaskFailure::kLostInput:
+      return v1::SyncRequest::Failed::REASON_LOST_INPUT;
   }
   std::abort();
 }
@@ -37,6 +39,8 @@ static absl::StatusOr<TaskFailure> from_proto(v1::SyncRequest::Failed::Reason re
       return TaskFailure::kError;
     case v1::SyncRequest::Failed::REASON_RETURNED:
       return TaskFailure::kReturned;
+    case v1::SyncRequest::Failed::REASON_LOST_INPUT:
+      return TaskFailure::kLostInput;
     default:
       return invalid_input("failed.reason: unknown value {}", static_cast<int>(reason));
   }

@@ -41,6 +41,41 @@ constexpr int kMostTile = 4096;
 constexpr int kMostDepth = 1024;
 constexpr int kMostCameraGrid = 1024;
 
+/// A job that looks into the estimator instead of making a picture (`converge`).
+struct Probe {
+  enum class Kind {
+    /// The picture's pixels with their camera samples at their centres, every pass an independent group: what
+    /// varies between passes is the light samples' own doing.
+    kVariance,
+    /// One pixel, one light: pixel (i,j) of the frame is the point u = (i + 1/2)/width, v = (j + 1/2)/height
+    /// of that light, its value w·f/p of one strategy of the mix.
+    kIntegrand,
+  };
+  Kind kind = Kind::kVariance;
+  // For kIntegrand:
+  int camera_width = 0, camera_height = 0;  ///< of the camera's image
+  int x = 0, y = 0;                         ///< the pixel that is looked at
+  int light = 0;                            ///< the area light, in the scene's order
+  std::vector<int> slots;                   ///< one per mix: which of its strategies
+  bool operator==(const Probe&) const = default;
+};
+
+/// What an `auto` mix does in one tile: one of its candidates, and how often.
+struct TilePlan {
+  int candidate = 0;   ///< place in AutoPlan::candidates
+  int64_t passes = 0;  ///< >= 1
+  bool operator==(const TilePlan&) const = default;
+};
+
+/// The plan of one automatic mix of a job. Names its candidates, so that a stored plan means the same to
+/// versions that would try others.
+struct AutoPlan {
+  int mix = 0;                  ///< the automatic mix's place in JobSpec::mixes
+  std::vector<Mix> candidates;  ///< none automatic
+  std::vector<TilePlan> tiles;  ///< one per tile of the job, row by row
+  bool operator==(const AutoPlan&) const = default;
+};
+
 /// Everything that decides a job's pixels, given the bundle's bytes.
 struct JobSpec {
   std::string scene;          ///< absolute path on the client's machine, for people
@@ -57,9 +92,12 @@ struct JobSpec {
   int tile = 64;              ///< edge of a tile, pixels
   uint64_t seed = 0;
   bool strict = false;        ///< warnings about the scene are errors
-  std::vector<int64_t> plan;  ///< passes per mix, fixed (replay); empty: from the budget
+  /// Passes per mix, fixed (replay); empty: from the budget. Of an automatic mix: the mean over the pixels.
+  std::vector<int64_t> plan;
+  std::vector<AutoPlan> auto_plans;  ///< with `plan`: one for each automatic mix, in their order
   std::string reference;      ///< path on the client's machine, for people and `fetch`
   std::vector<Region> regions;
+  std::optional<Probe> probe;
   bool operator==(const JobSpec&) const = default;
 };
 
@@ -73,6 +111,14 @@ struct PassRange {
 /// Pilot samples have random numbers of their own and never reach the image.
 enum class TaskKind { kPilot, kRun };
 
+/// What stands for an automatic mix of the job in one tile.
+struct ChosenMix {
+  int mix = 0;        ///< the automatic mix's place in JobSpec::mixes
+  Mix chosen;         ///< not automatic
+  int64_t group = 1;  ///< passes per independently scrambled group, in place of the task's
+  bool operator==(const ChosenMix&) const = default;
+};
+
 /// One tile × a range of passes × all mixes that are timed against each other.
 struct TileTask {
   uint64_t id = 0;                ///< unique within the job, in merge order
@@ -83,7 +129,24 @@ struct TileTask {
   uint64_t shuffle = 0;           ///< seeds the interleaving of the mixes' slices; not the image
   /// kPilot: thread-CPU seconds after which no further pass of a mix is begun (0: all passes).
   double pilot_seconds = 0;
+  /// kRun: one for each automatic mix, in their order. kPilot: all candidates of all automatic mixes,
+  /// measured on `pilot_blocks` small blocks of pixels (fewer where pilot_seconds per mix are up).
+  std::vector<ChosenMix> chosen;
+  int pilot_blocks = 0;
   bool operator==(const TileTask&) const = default;
+};
+
+/// A fixed piece of work, timed between slices of rendering (worker/render/calibration.h): what a second
+/// was worth on that machine then. CPU time in these units compares across machines and moods of one.
+struct Calibration {
+  uint64_t units = 0;
+  double seconds = 0;  ///< thread CPU of all units together; part of no mix's cpu_seconds
+  bool operator==(const Calibration&) const = default;
+  Calibration& operator+=(const Calibration& other) {
+    units += other.units;
+    seconds += other.seconds;
+    return *this;
+  }
 };
 
 /// What one mix of one tile task cost. Never part of the image's bits.
@@ -96,6 +159,15 @@ struct MixCost {
   /// Sum over the tile's pixels and channels of s²/(mean² + 1e-2), s² the variance of one pass; what a
   /// pilot tells `--target-error`. 0 with fewer than two passes.
   double relative_variance = 0;
+  Calibration calibration;  ///< timed beside this mix's slices; none in a pilot
+  // Of a candidate of `auto`, which a pilot measures on some of the tile's pixels: figures are sums over these.
+  int64_t pixels = 0;  ///< measured; `passes` is then the number of passes in each
+  /// Sum over the measured pixels of the square of their part of relative_variance: how sure that is.
+  double relative_variance_squares = 0;
+  /// Work counted in rays, line queries and their steps, in units of about a nanosecond; the same on every
+  /// machine with this instruction set.
+  double work = 0;
+  double overhead_seconds = 0;  ///< CPU time of the pilot's warming up, in no other figure
   bool operator==(const MixCost&) const = default;
 };
 

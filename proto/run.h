@@ -2,11 +2,13 @@
 // What a job says about itself: where it stands, and what came of it. The same as the messages of
 // proto/render.proto; the comments there give the full meaning of each figure.
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "proto/job.h"
+#include "proto/job_terms.h"
 
 namespace penumbra {
 
@@ -15,7 +17,8 @@ using JobId = std::string;
 
 enum class JobState { kQueued, kPilot, kRunning, kDone, kFailed, kCancelled };
 
-/// True for the states that never change again.
+/// True for the states that do not change any more, but for one way back: a job that is done runs again if
+/// the disk has not kept one of its results.
 inline bool is_final(JobState state) {
   return state >= JobState::kDone;
 }
@@ -24,6 +27,13 @@ std::string_view name_of(JobState state);
 
 /// Whose fault a failure is: decides the exit code (2 or 1).
 enum class FailureKind { kNone, kBadInput, kJobFailed };
+
+/// What went wrong on a job's way and was made good; the comments of proto/render.proto say what each counts.
+struct FaultCounts {
+  uint64_t lost_leases = 0, overdue_leases = 0, late_results = 0, refused_results = 0;
+  uint64_t failures = 0, returned_leases = 0, corrupt_results = 0;
+  bool operator==(const FaultCounts&) const = default;
+};
 
 struct JobStatus {
   JobId job;
@@ -40,7 +50,18 @@ struct JobStatus {
   uint64_t retries = 0;        ///< leases that were given out again
   std::string scene;
   double submitted_unix_seconds = 0;
+  FaultCounts faults;
+  JobTerms terms;
   bool operator==(const JobStatus&) const = default;
+};
+
+/// One line of a job's log: what became of a lease, or of the job.
+struct LogLine {
+  double unix_seconds = 0;
+  std::optional<uint64_t> task;  ///< none: of the job itself
+  std::string worker;            ///< host/name; empty where no worker is concerned
+  std::string text;
+  bool operator==(const LogLine&) const = default;
 };
 
 /// All tiles have finished the same pass of a mix.
@@ -59,6 +80,7 @@ struct MixSummary {
   double pilot_cpu_seconds = 0;
   std::vector<std::string> substitutions;
   std::vector<Checkpoint> checkpoints;  ///< reached by every tile, ascending
+  Calibration calibration;              ///< timed beside this mix's slices
   bool operator==(const MixSummary&) const = default;
 };
 
@@ -68,6 +90,7 @@ struct TileRow {
   int64_t passes = 0;
   double cpu_seconds = 0;
   std::string worker;
+  Calibration calibration;
   bool operator==(const TileRow&) const = default;
 };
 
@@ -83,6 +106,7 @@ struct RunSummary {
   double render_wall_seconds = 0;
   double total_wall_seconds = 0;
   double first_result_seconds = 0;
+  std::vector<AutoPlan> auto_plans;  ///< one for each automatic mix, once planned
   bool operator==(const RunSummary&) const = default;
 };
 

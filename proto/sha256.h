@@ -1,11 +1,12 @@
 #pragma once
-// SHA-256 of bytes that come in pieces.
+// SHA-256: the name of every blob.
 #include <memory>
 #include <string>
 #include <string_view>
 
 namespace penumbra {
 
+/// Of bytes that come in pieces.
 class Sha256 {
  public:
   Sha256();
@@ -18,5 +19,8 @@ class Sha256 {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// Of bytes that are all there.
+std::string sha256(std::string_view bytes);
 
 }  // namespace penumbra

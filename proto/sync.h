@@ -33,7 +33,7 @@ struct CompletedTask {
   bool operator==(const CompletedTask&) const = default;
 };
 
-enum class TaskFailure { kBadInput, kError, kReturned };
+enum class TaskFailure { kBadInput, kError, kReturned, kLostInput };
 
 struct FailedTask {
   LeaseId lease;

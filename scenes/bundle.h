@@ -6,6 +6,7 @@
 
 #include "absl/status/statusor.h"
 #include "proto/job.h"
+#include "proto/sha256.h"
 #include "scenes/description.h"
 #include "scenes/files.h"
 
@@ -31,8 +32,7 @@ struct BundleIndex {
 std::string serialize(const BundleIndex& index);
 absl::StatusOr<BundleIndex> parse_bundle_index(std::string_view json);
 
-/// Digest of bytes, of a file.
-Digest sha256(std::string_view bytes);
+/// Digest of a file's bytes.
 absl::StatusOr<Digest> sha256_file(const std::string& path);
 
 /// A bundle on the client's machine: the index and where each blob lies.

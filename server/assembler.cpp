@@ -26,11 +26,11 @@ absl::Status merge_range(const Assembly& job, const BlobFolder& blobs, size_t ra
   for (size_t t = 0; t < job.tiles.size(); ++t) {
     const Digest& digest = job.results[range * job.tiles.size() + t];
     if (digest.empty()) continue;
-    ASSIGN_OR_RETURN(const std::string bytes, blobs.read(digest));
-    ASSIGN_OR_RETURN(const TileResult result, parse_tile_result(bytes));
-    if (result.mixes.size() != job.spec.mixes.size())
-      return make_status(absl::StatusCode::kDataLoss, "result {}: {} mixes", digest, result.mixes.size());
-    for (int i = 0; i < batch.count; ++i) merge(frames[i], result.mixes[batch.first + i]);
+    ASSIGN_OR_RETURN(std::string bytes, blobs.read(digest));
+    ASSIGN_OR_RETURN(const ReceivedTile result, ReceivedTile::parse(std::move(bytes)));
+    if (result.mixes().size() != job.spec.mixes.size())
+      return make_status(absl::StatusCode::kDataLoss, "result {}: {} mixes", digest, result.mixes().size());
+    for (int i = 0; i < batch.count; ++i) merge(frames[i], result.mixes()[batch.first + i]);
   }
   return absl::OkStatus();
 }
@@ -38,7 +38,8 @@ absl::Status merge_range(const Assembly& job, const BlobFolder& blobs, size_t ra
 absl::Status deliver_frames(const std::vector<Frame>& frames, MixBatch batch, int checkpoint, bool final,
                             const DeliverFrame& deliver) {
   for (int i = 0; i < batch.count; ++i)
-    RETURN_IF_ERROR(deliver({batch.first + i, checkpoint, final, resolve(frames[i])}));
+    RETURN_IF_ERROR(
+        deliver({batch.first + i, checkpoint, final, final ? resolve(frames[i]) : resolve_rgb(frames[i])}));
   return absl::OkStatus();
 }
 
@@ -63,7 +64,7 @@ absl::Status assemble_batch(const Assembly& job, const BlobFolder& blobs, bool c
 }  // namespace
 
 Assembly assembly_of(const JobRecord& job) {
-  Assembly out{job.spec(), job.tiles(), job.plan(), {}};
+  Assembly out{job.spec(), job.tiles(), job.plan(), job.first_run_id(), {}};
   for (uint64_t id = job.first_run_id(); id < job.results().size(); ++id)
     out.results.push_back(job.results()[id] ? job.results()[id]->result : Digest());
   return out;
@@ -79,6 +80,14 @@ absl::Status assemble(const Assembly& job, const BlobFolder& blobs, bool checkpo
     RETURN_IF_ERROR(assemble_batch(job, blobs, checkpoints, batch, deliver));
   }
   return absl::OkStatus();
+}
+
+std::vector<std::pair<uint64_t, Digest>> lost_results(const Assembly& job, const BlobFolder& blobs) {
+  std::vector<std::pair<uint64_t, Digest>> lost;
+  for (size_t i = 0; i < job.results.size(); ++i)
+    if (!job.results[i].empty() && !blobs.verify(job.results[i]).ok())
+      lost.emplace_back(job.first_run_id + i, job.results[i]);
+  return lost;
 }
 
 }  // namespace penumbra

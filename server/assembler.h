@@ -3,6 +3,7 @@
 // results there are, never on when they came or who made them.
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -18,6 +19,7 @@ struct Assembly {
   JobSpec spec;
   std::vector<PixelRect> tiles;
   std::optional<Plan> plan;
+  uint64_t first_run_id = 0;
   std::vector<Digest> results;  ///< of the run tasks, in order of ids; empty: not accepted yet
 };
 Assembly assembly_of(const JobRecord& job);
@@ -37,5 +39,9 @@ using DeliverFrame = std::function<absl::Status(const AssembledFrame&)>;
 /// one); results are read once per such batch. Stops at the first error of `deliver`, or of a blob.
 absl::Status assemble(const Assembly& job, const BlobFolder& blobs, bool checkpoints, uint64_t memory,
                       const DeliverFrame& deliver);
+
+/// Results whose bytes are gone or no longer what they were, by their place in `results`. Reads them all:
+/// for when assembling has failed with NotFound or DataLoss.
+std::vector<std::pair<uint64_t, Digest>> lost_results(const Assembly& job, const BlobFolder& blobs);
 
 }  // namespace penumbra

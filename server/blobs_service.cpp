@@ -16,14 +16,18 @@ absl::Status check_digest(const std::string& digest) {
   return absl::OkStatus();
 }
 
-absl::StatusOr<uint64_t> receive(const BlobFolder& blobs, uint64_t most_bytes,
+absl::StatusOr<uint64_t> receive(const BlobFolder& blobs, const BlobLimits& limits,
                                  grpc::ServerReader<v1::UploadChunk>& reader) {
   v1::UploadChunk chunk;
   if (!reader.Read(&chunk)) return invalid_input("an upload without a chunk");
   RETURN_IF_ERROR(check_digest(chunk.digest()));
-  if (chunk.size() > most_bytes)
-    return make_status(absl::StatusCode::kResourceExhausted, "blob {}: {} bytes, the limit is {}",
-                       chunk.digest(), chunk.size(), most_bytes);
+  if (chunk.size() > limits.most_bytes)
+    return make_status(absl::StatusCode::kInvalidArgument, "blob {}: {} bytes, the limit is {}",
+                       chunk.digest(), chunk.size(), limits.most_bytes);
+  if (const uint64_t free = blobs.free_bytes(); free < limits.reserve_bytes + chunk.size())
+    return make_status(absl::StatusCode::kResourceExhausted,
+                       "blob {}: {} bytes; the server's disk has {} left and keeps {} of them free",
+                       chunk.digest(), chunk.size(), free, limits.reserve_bytes);
   const uint64_t size = chunk.size();
   const bool flush = !chunk.flush_later();
   ASSIGN_OR_RETURN(const auto writer, blobs.write(chunk.digest(), chunk.size(), chunk.offset()));
@@ -44,7 +48,7 @@ grpc::Status BlobsService::FindMissing(grpc::ServerContext*, const v1::FindMissi
   std::set<std::string> seen;
   for (const std::string& digest : request->digests()) {
     if (const absl::Status status = check_digest(digest); !status.ok()) return to_grpc(status);
-    if (!seen.insert(digest).second || blobs_.size(digest)) continue;
+    if (!seen.insert(digest).second || blobs_.touch(digest)) continue;
     v1::FindMissingResponse::Missing* missing = response->add_missing();
     missing->set_digest(digest);
     missing->set_partial(blobs_.partial(digest));
@@ -54,7 +58,7 @@ grpc::Status BlobsService::FindMissing(grpc::ServerContext*, const v1::FindMissi
 
 grpc::Status BlobsService::Upload(grpc::ServerContext*, grpc::ServerReader<v1::UploadChunk>* reader,
                                   v1::UploadResponse* response) {
-  const absl::StatusOr<uint64_t> size = receive(blobs_, most_bytes_, *reader);
+  const absl::StatusOr<uint64_t> size = receive(blobs_, limits_, *reader);
   if (size.ok()) response->set_size(*size);
   return to_grpc(size.status());
 }
@@ -67,14 +71,19 @@ grpc::Status BlobsService::Download(grpc::ServerContext*, const v1::DownloadRequ
   const auto size = static_cast<uint64_t>(in.tellg());
   if (request->offset() > size) return grpc::Status(grpc::StatusCode::OUT_OF_RANGE, "offset beyond the end");
   in.seekg(static_cast<std::streamoff>(request->offset()));
+  Sha256 hash;
   for (uint64_t left = size - request->offset(); left > 0;) {
     v1::DownloadChunk chunk;
     chunk.mutable_data()->resize(std::min<uint64_t>(left, kChunkBytes));
     if (!in.read(chunk.mutable_data()->data(), static_cast<std::streamsize>(chunk.data().size())))
       return grpc::Status(grpc::StatusCode::DATA_LOSS, "the blob ends early: " + request->digest());
     left -= chunk.data().size();
+    if (request->offset() == 0) hash.add(chunk.data());
     if (!writer->Write(chunk)) return grpc::Status(grpc::StatusCode::CANCELLED, "the reader has hung up");
   }
+  // Whoever gets it will see the same; here the file goes, so that it can be uploaded anew.
+  if (request->offset() == 0 && hash.hex() != request->digest())
+    return to_grpc(blobs_.verify(request->digest()));
   return grpc::Status::OK;
 }
 

@@ -4,11 +4,17 @@
 
 namespace penumbra {
 
+struct BlobLimits {
+  uint64_t most_bytes = uint64_t{1} << 36;  ///< of one blob
+  /// Bytes of the disk that blobs leave free, so that the job store can always write: a full disk stops
+  /// uploads (RESOURCE_EXHAUSTED; workers keep their results and try again), not the server.
+  uint64_t reserve_bytes = uint64_t{256} << 20;
+};
+
 /// proto/blobs.proto over a folder. Translates only.
 class BlobsService final : public v1::Blobs::Service {
  public:
-  /// `most_bytes`: largest blob that is taken.
-  BlobsService(const BlobFolder& blobs, uint64_t most_bytes) : blobs_(blobs), most_bytes_(most_bytes) {}
+  BlobsService(const BlobFolder& blobs, const BlobLimits& limits) : blobs_(blobs), limits_(limits) {}
 
   grpc::Status FindMissing(grpc::ServerContext*, const v1::FindMissingRequest* request,
                            v1::FindMissingResponse* response) override;
@@ -19,7 +25,7 @@ class BlobsService final : public v1::Blobs::Service {
 
  private:
   const BlobFolder& blobs_;
-  uint64_t most_bytes_;
+  BlobLimits limits_;
 };
 
 }  // namespace penumbra

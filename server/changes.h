@@ -19,8 +19,9 @@ struct JobHeader {
   JobState state = JobState::kQueued;
   FailureKind failure = FailureKind::kNone;
   std::string message;
-  std::vector<int64_t> passes;  ///< planned, per mix; empty until then
-  bool loaded = false;          ///< `load` and `substitutions` are known
+  std::vector<int64_t> passes;       ///< planned, per mix; empty until then
+  std::vector<AutoPlan> auto_plans;  ///< planned with `passes`, one for each automatic mix
+  bool loaded = false;               ///< `load` and `substitutions` are known
   LoadReport load;
   std::vector<Substitution> substitutions;
   // Seconds since 1970; 0 until it has happened.
@@ -28,6 +29,8 @@ struct JobHeader {
   double finished_unix = 0;
   double worker_cpu_seconds = 0;
   double scheduler_cpu_seconds = 0;
+  FaultCounts faults;
+  JobTerms terms;
   bool operator==(const JobHeader&) const = default;
 };
 
@@ -61,12 +64,28 @@ struct PutResult {
   std::vector<MixCost> costs;
   std::string worker;
 };
+/// The bytes of an accepted result are gone: the task is pending again. The epoch stays.
+struct DropResult {
+  LeaseId lease;
+};
+/// A worker has failed at a task, or died of it: counted over restarts, or a task that takes the server with
+/// it would be tried for ever.
+struct PutBlame {
+  JobId job;
+  uint64_t task = 0;
+  std::string who;  ///< identity of a reporter, or incarnation that died
+  bool death = false;
+};
+/// A final job is forgotten with everything that belongs to it.
+struct DropJob {
+  JobId job;
+};
 /// A worker has contributed a result.
 struct PutWorker {
   WorkerInfo worker;
 };
 
-using Change = std::variant<PutJob, PutLease, DropLease, PutResult, PutWorker>;
+using Change = std::variant<PutJob, PutLease, DropLease, PutResult, DropResult, PutBlame, DropJob, PutWorker>;
 
 /// A job as it comes back from a store.
 struct StoredJob {
@@ -77,6 +96,11 @@ struct StoredJob {
   };
   std::vector<Lease> leases;
   std::vector<PutResult> results;
+  struct BlameCount {
+    PutBlame blame;
+    uint64_t count = 1;
+  };
+  std::vector<BlameCount> blames;
 };
 
 struct StoredState {

@@ -154,6 +154,7 @@ void Coordinator::run() {
       if (Finish finish = posted.work(scheduler_, now)) finished.push_back(std::move(finish));
     scheduler_.expire(now);
     answer_waiting(now, finished, stopping);
+    for (const std::string& notice : scheduler_.take_notices()) spdlog::info("{}", notice);
     absl::Status durable = commit();
     if (!durable.ok()) {
       spdlog::critical("the job store failed, the server ends: {}", message_of(durable));
@@ -162,6 +163,8 @@ void Coordinator::run() {
       answer_waiting(now, finished, true);
     }
     for (const Finish& finish : finished) finish(durable);
+    if (batch.empty() && !failed_)
+      if (const absl::Status rested = store_->rest(); !rested.ok()) spdlog::warn("{}", message_of(rested));
     const std::lock_guard lock(mutex_);
     published_revision_ = scheduler_.revision();
     changed_.notify_all();

@@ -1,5 +1,8 @@
 #include "server/job_record.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "proto/status.h"
 
 namespace penumbra {
@@ -26,11 +29,11 @@ TileTask JobRecord::description(uint64_t id) const {
 double JobRecord::work(uint64_t id) const {
   const uint64_t index = id - first_run_id_;
   const uint64_t range = index / tiles_.size();
+  const uint64_t tile = index % tiles_.size();
   double passes = 0;
   for (size_t m = 0; m < plan_->passes.size(); ++m)
-    passes += static_cast<double>(plan_->boundaries[range].passes[m] -
-                                  (range == 0 ? 0 : plan_->boundaries[range - 1].passes[m]));
-  return passes * static_cast<double>(tiles_[index % tiles_.size()].area());
+    passes += static_cast<double>(run_range(*plan_, range, tile, m).count());
+  return passes * static_cast<double>(tiles_[tile].area());
 }
 
 double JobRecord::fraction() const {
@@ -38,17 +41,31 @@ double JobRecord::fraction() const {
   return stage_total_ == 0 ? 0 : static_cast<double>(stage_done_) / static_cast<double>(stage_total_);
 }
 
-LeaseId JobRecord::lease(const std::string& holder) {
-  PENUMBRA_CHECK(pending() > 0);
-  const uint64_t id = *queue_.begin();
-  queue_.erase(queue_.begin());
+std::optional<LeaseId> JobRecord::lease(const std::string& holder, const Now& now,
+                                        const std::function<bool(const Blame&)>& refuses) {
+  auto next = queue_.begin();
+  if (!blames.empty())
+    next = std::find_if(queue_.begin(), queue_.end(), [&](uint64_t id) {
+      const auto blame = blames.find(id);
+      return blame == blames.end() || !refuses(blame->second);
+    });
+  if (next == queue_.end() || final()) return std::nullopt;
+  const uint64_t id = *next;
+  queue_.erase(next);
   TaskRecord& task = tasks_[id];
   task.state = TaskState::kLeased;
   task.begun = false;
+  task.since = now.steady;
   task.holder = holder;
   if (++task.epoch > 1) ++retries_;
   ++leased_;
-  return {header.id, id, task.epoch};
+  return LeaseId{header.id, id, task.epoch};
+}
+
+void JobRecord::mark_begun(uint64_t id, const Now& now) {
+  TaskRecord& task = tasks_[id];
+  if (std::exchange(task.begun, true)) return;
+  task.since = now.steady;
 }
 
 void JobRecord::release(uint64_t id) {
@@ -72,18 +89,33 @@ void JobRecord::accept(uint64_t id, AcceptedResult result) {
   if (!is_pilot(id)) work_done_ += work(id);
 }
 
+void JobRecord::lose(uint64_t id) {
+  TaskRecord& task = tasks_[id];
+  PENUMBRA_CHECK(task.state == TaskState::kDone && !is_pilot(id));
+  task.state = TaskState::kPending;
+  task.begun = false;
+  results_[id].reset();
+  queue_.insert(id);
+  --stage_done_;
+  work_done_ -= work(id);
+}
+
 absl::Status JobRecord::make_run() {
   if (header.passes.empty()) {
     std::vector<std::vector<MixCost>> pilot;
     for (uint64_t id = 0; id < first_run_id_; ++id) pilot.push_back(results_[id]->costs);
-    ASSIGN_OR_RETURN(header.passes, planned_passes(spec(), pilot));
+    ASSIGN_OR_RETURN(PlannedPasses planned, planned_passes(spec(), pilot));
+    header.passes = std::move(planned.passes);
+    header.auto_plans = std::move(planned.autos);
   }
-  plan_ = make_plan(spec(), header.passes);
+  for (const AutoPlan& plan : header.auto_plans)
+    if (plan.tiles.size() != tiles_.size())
+      return invalid_input("auto_plans: {} tiles, where the job has {}", plan.tiles.size(), tiles_.size());
+  plan_ = make_plan(spec(), header.passes, header.auto_plans);
   stage_done_ = 0;
   stage_total_ = task_count(*plan_, tiles_);
   add_tasks(stage_total_);
-  for (size_t m = 0; m < plan_->passes.size(); ++m)
-    work_total_ += static_cast<double>(plan_->passes[m]) * static_cast<double>(spec().crop.area());
+  for (uint64_t id = first_run_id_; id < tasks_.size(); ++id) work_total_ += work(id);
   return absl::OkStatus();
 }
 
@@ -111,12 +143,21 @@ absl::Status JobRecord::restore(const StoredJob& stored) {
       accept(result.lease.task, {result.result, result.costs, result.worker});
     }
   }
+  for (const StoredJob::BlameCount& stored_blame : stored.blames) {
+    Blame& blame = blames[stored_blame.blame.task];
+    if (stored_blame.blame.death) {
+      blame.deaths.insert(stored_blame.blame.who);
+    } else {
+      blame.reporters.insert(stored_blame.blame.who);
+      blame.reports += static_cast<int>(stored_blame.count);
+    }
+  }
   for (const StoredJob::Lease& lease : stored.leases) {
     if (lease.lease.task >= tasks_.size()) return broken("a lease of a task that does not exist");
     if (tasks_[lease.lease.task].state == TaskState::kDone) continue;
     take(lease.lease.task, lease.lease.epoch);
     tasks_[lease.lease.task].holder = lease.holder.worker;
-    if (lease.holder.worker.empty()) release(lease.lease.task);
+    if (lease.holder.worker.empty() || final()) release(lease.lease.task);
   }
   return absl::OkStatus();
 }

@@ -1,5 +1,7 @@
 #pragma once
 // One job as the scheduler sees it: its tasks, who holds them, what was accepted.
+#include <deque>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -23,6 +25,7 @@ enum class TaskState : uint8_t { kPending, kLeased, kDone };
 struct TaskRecord {
   TaskState state = TaskState::kPending;
   bool begun = false;  ///< the holder has begun to render
+  double since = 0;    ///< Now::steady of the lease, then of the beginning: what a limit counts from
   uint64_t epoch = 0;  ///< of the latest lease; 0: never leased
   std::string holder;  ///< worker incarnation; empty unless leased
 };
@@ -36,7 +39,7 @@ struct AcceptedResult {
 /// Who has failed at a task. Reported failures and deaths are counted apart: a death may have had any
 /// cause, and farms kill workers for reasons of their own.
 struct Blame {
-  std::set<std::string> reporters;
+  std::set<std::string> reporters;  ///< identities of workers: a restart makes no new one
   int reports = 0;
   std::set<std::string> deaths;
 };
@@ -49,6 +52,12 @@ class JobRecord {
   JobHeader header;
   double scheduler_cpu_base = 0;  ///< Now::process_cpu when accounting (re)started
   std::map<uint64_t, Blame> blames;
+  std::deque<LogLine> log;  ///< the latest kMostLogLines; not stored
+  static constexpr size_t kMostLogLines = 1000;
+  void append_log(LogLine line) {
+    if (log.size() >= kMostLogLines) log.pop_front();
+    log.push_back(std::move(line));
+  }
 
   const JobSpec& spec() const { return header.spec; }
   bool final() const { return is_final(header.state); }
@@ -71,13 +80,17 @@ class JobRecord {
   /// One per task; empty where nothing was accepted.
   const std::vector<std::optional<AcceptedResult>>& results() const { return results_; }
 
-  /// Leases the pending task with the lowest id. Requires pending() > 0.
-  LeaseId lease(const std::string& holder);
-  void mark_begun(uint64_t id) { tasks_[id].begun = true; }
+  /// Leases the pending task with the lowest id, leaving out those whose blame `refuses`. None if there is
+  /// none.
+  std::optional<LeaseId> lease(const std::string& holder, const Now& now,
+                               const std::function<bool(const Blame&)>& refuses);
+  void mark_begun(uint64_t id, const Now& now);
   /// Back to the queue; the epoch stays.
   void release(uint64_t id);
   /// Requires a task that is leased.
   void accept(uint64_t id, AcceptedResult result);
+  /// The bytes of an accepted run task are gone: back to the queue. The epoch stays.
+  void lose(uint64_t id);
   /// Every task of the pilot is done and there is no plan yet (at once, for a job without pilot).
   bool ready_to_plan() const { return !plan_ && stage_done_ == stage_total_; }
   /// Makes the plan and the run's tasks. Error: what planned_passes says.

@@ -30,7 +30,7 @@ void for_each_result(const JobRecord& job, TaskKind kind, Visit visit) {
 double sum_cpu_seconds(const JobRecord& job, TaskKind kind) {
   double sum = 0;
   for_each_result(job, kind, [&](uint64_t, const AcceptedResult& result) {
-    for (const MixCost& cost : result.costs) sum += cost.cpu_seconds;
+    for (const MixCost& cost : result.costs) sum += cost.cpu_seconds + cost.overhead_seconds;
   });
   return sum;
 }
@@ -45,6 +45,20 @@ size_t whole_ranges(const JobRecord& job) {
   return range;
 }
 
+/// Of fixed mixes apart; of `auto` the pilot is part of its own cost: what it buys is the plan.
+void add_pilot(const JobRecord& job, std::vector<MixSummary>& mixes) {
+  for_each_result(job, TaskKind::kPilot, [&](uint64_t id, const AcceptedResult& result) {
+    const TileTask task = job.description(id);
+    for (size_t i = 0; i < result.costs.size(); ++i) {
+      const size_t m = i < mixes.size() ? i : static_cast<size_t>(task.chosen[i - mixes.size()].mix);
+      mixes[m].pilot_cpu_seconds += result.costs[i].cpu_seconds + result.costs[i].overhead_seconds;
+      mixes[m].non_finite += i < mixes.size() ? 0 : result.costs[i].non_finite;
+    }
+  });
+  for (MixSummary& mix : mixes)
+    if (mix.mix.automatic) mix.cpu_seconds = mix.pilot_cpu_seconds;
+}
+
 std::vector<MixSummary> mix_summaries(const JobRecord& job) {
   std::vector<MixSummary> mixes(job.spec().mixes.size());
   for (size_t m = 0; m < mixes.size(); ++m) {
@@ -52,9 +66,7 @@ std::vector<MixSummary> mix_summaries(const JobRecord& job) {
     if (job.plan()) mixes[m].planned_passes = job.plan()->passes[m];
   }
   for (const Substitution& s : job.header.substitutions) mixes[s.mix].substitutions.push_back(s.text);
-  for_each_result(job, TaskKind::kPilot, [&](uint64_t, const AcceptedResult& result) {
-    for (size_t m = 0; m < mixes.size(); ++m) mixes[m].pilot_cpu_seconds += result.costs[m].cpu_seconds;
-  });
+  add_pilot(job, mixes);
   if (!job.plan()) return mixes;
 
   const size_t tiles = job.tiles().size();
@@ -68,12 +80,13 @@ std::vector<MixSummary> mix_summaries(const JobRecord& job) {
       mixes[m].rays += cost.rays;
       mixes[m].line_queries += cost.line_queries;
       mixes[m].non_finite += cost.non_finite;
+      mixes[m].calibration += cost.calibration;
       seconds[range][m] += cost.cpu_seconds;
     }
   });
   const size_t whole = whole_ranges(job);
   for (size_t m = 0; m < mixes.size(); ++m) {
-    double sum = 0;
+    double sum = mixes[m].mix.automatic ? mixes[m].pilot_cpu_seconds : 0;
     for (size_t range = 0; range < whole; ++range) {
       const PassBoundary& boundary = job.plan()->boundaries[range];
       sum += seconds[range][m];
@@ -95,6 +108,7 @@ std::vector<TileRow> tile_rows(const JobRecord& job) {
       row.worker = result.worker;
       row.passes += result.costs[m].passes;
       row.cpu_seconds += result.costs[m].cpu_seconds;
+      row.calibration += result.costs[m].calibration;
     }
   });
   std::vector<TileRow> out;
@@ -131,6 +145,8 @@ JobStatus status_of(const Scheduler& scheduler, const JobRecord& job, const Now&
   status.retries = job.retries();
   status.scene = job.spec().scene;
   status.submitted_unix_seconds = job.header.submitted_unix;
+  status.faults = job.header.faults;
+  status.terms = job.header.terms;
   if (status.message.empty() && status.state == JobState::kQueued && status.workers == 0)
     status.message = "waiting for a worker: none is connected";
   return status;
@@ -149,6 +165,7 @@ RunSummary summary_of(const Scheduler& scheduler, const JobRecord& job, const No
     if (known != scheduler.contributors().end()) used[result->worker] = known->second;
   }
   for (auto& [id, worker] : used) summary.workers.push_back(std::move(worker));
+  summary.auto_plans = job.header.auto_plans;
   summary.load = job.header.load;
   summary.worker_cpu_seconds = job.header.worker_cpu_seconds;
   summary.render_wall_seconds = render_seconds(job, now);
@@ -156,38 +173,6 @@ RunSummary summary_of(const Scheduler& scheduler, const JobRecord& job, const No
   if (job.header.first_result_unix != 0)
     summary.first_result_seconds = std::max(0.0, job.header.first_result_unix - job.header.submitted_unix);
   return summary;
-}
-
-std::vector<std::string> explain(const Scheduler& scheduler, const JobRecord& job, const Now& now) {
-  const JobStatus status = status_of(scheduler, job, now);
-  if (job.final())
-    return {fmt::format("The job is {}{}{}.", name_of(status.state), status.message.empty() ? "" : ": ",
-                        status.message)};
-  std::vector<std::string> reasons;
-  if (status.workers == 0) reasons.push_back("No worker is connected: start penumbra-worker.");
-  uint64_t ahead = 0;
-  for (const auto& [id, other] : scheduler.jobs())
-    if (!other->final() && other->header.submitted_unix < job.header.submitted_unix)
-      ahead += other->pending();
-  if (ahead > 0 && job.pending() > 0)
-    reasons.push_back(fmt::format("{} tasks of jobs submitted earlier come first.", ahead));
-  if (!job.plan())
-    reasons.push_back(fmt::format("The pilot that turns the budget into passes has done {} of {} tiles.",
-                                  status.tasks_done, status.tasks_total));
-  reasons.push_back(fmt::format("{} of {} tasks are done, {} are with workers, {} are waiting.",
-                                status.tasks_done, status.tasks_total, status.tasks_leased, job.pending()));
-  for (const auto& [id, worker] : scheduler.workers()) {
-    const auto holds = std::count_if(worker.leases.begin(), worker.leases.end(),
-                                     [&](const auto& lease) { return lease.first.first == job.header.id; });
-    reasons.push_back(
-        fmt::format("Worker {} on {} ({} threads{}) holds {} of its tasks and called {:.1f} s ago.",
-                    worker.name, worker.info.host, worker.info.cores, worker.draining ? ", draining" : "",
-                    holds, now.steady - worker.last_seen));
-  }
-  for (const auto& [task, blame] : job.blames)
-    reasons.push_back(fmt::format("Task {} has failed {} times; {} workers died while they rendered it.",
-                                  task, blame.reports, blame.deaths.size()));
-  return reasons;
 }
 
 }  // namespace penumbra

@@ -14,6 +14,8 @@ class JobStore {
   /// All changes or none, in order; durable when it returns. Called by one thread.
   virtual absl::Status apply(const std::vector<Change>& changes) = 0;
   virtual absl::StatusOr<StoredState> load() = 0;
+  /// Nothing waits: time for work that would hold up an apply(). Called by the same thread.
+  virtual absl::Status rest() { return absl::OkStatus(); }
 };
 
 }  // namespace penumbra

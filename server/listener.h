@@ -8,6 +8,7 @@
 
 #include "absl/status/statusor.h"
 #include "proto/channel.h"
+#include "server/token_file.h"
 
 namespace penumbra {
 
@@ -16,9 +17,15 @@ struct Listener {
   std::string address;  ///< HOST:PORT with the port that was bound
 };
 
-/// Listens on `address` (port 0: any free one). InvalidArgument names the flag: a port in use, TLS files
-/// that cannot be read, or an address other machines can reach without TLS and token.
-absl::StatusOr<Listener> listen(const std::string& address, const Credentials& credentials,
-                                const std::vector<grpc::Service*>& services);
+struct ListenOptions {
+  std::string address;  ///< HOST:PORT; port 0: any free one
+  Credentials credentials;
+  std::vector<TokenEntry> tokens;  ///< of credentials.token_file
+  bool insecure = false;           ///< other machines may call without TLS and token
+};
+
+/// Listens. InvalidArgument names the flag: a port in use, TLS files that cannot be read, or an address
+/// that other machines can reach without TLS and token.
+absl::StatusOr<Listener> listen(const ListenOptions& options, const std::vector<grpc::Service*>& services);
 
 }  // namespace penumbra

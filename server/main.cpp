@@ -1,4 +1,5 @@
 // penumbra-server: flags, folders, services, signals.
+#include <malloc.h>
 #include <signal.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
@@ -6,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <map>
 
 #include "film/atomic_file.h"
 #include "proto/status.h"
@@ -13,6 +15,7 @@
 #include "server/coordinator.h"
 #include "server/listener.h"
 #include "server/render_service.h"
+#include "server/retention.h"
 #include "server/sqlite_store.h"
 #include "server/store_folder.h"
 #include "server/worker_service.h"
@@ -23,11 +26,13 @@ namespace {
 constexpr int kFailed = 1, kBadUsage = 2;
 
 struct Options {
-  std::string listen = "127.0.0.1:7400";
+  ListenOptions listen{.address = "127.0.0.1:7400", .credentials = {}, .tokens = {}};
   std::string store;
   std::string address_file;
   std::string log_level = "info";
-  Credentials credentials;
+  BlobLimits blobs;
+  SchedulerLimits scheduler;
+  RetentionLimits retention;
 };
 
 Now now() {
@@ -42,17 +47,43 @@ Now now() {
           seconds(usage.ru_utime) + seconds(usage.ru_stime)};
 }
 
+/// DURATION as everywhere (500ms, 30s, 2m, 1h), given to the option as plain seconds.
+CLI::Validator seconds_flag() {
+  const std::map<std::string, double> units = {{"ms", 1e-3}, {"s", 1}, {"m", 60}, {"h", 3600}};
+  return CLI::AsNumberWithUnit(units, CLI::AsNumberWithUnit::UNIT_REQUIRED, "DURATION");
+}
+
 void add_flags(CLI::App& app, Options& options) {
-  app.add_option("--listen", options.listen, "HOST:PORT; port 0 takes a free one")->capture_default_str();
+  app.add_option("--listen", options.listen.address, "HOST:PORT; port 0 takes a free one")
+      ->capture_default_str();
   app.add_option("--store", options.store, "folder for jobs, scenes and results; a restart continues from it")
       ->required();
   app.add_option("--address-file", options.address_file, "file to write the bound HOST:PORT to");
-  app.add_option("--tls-cert", options.credentials.cert, "server certificate, PEM");
-  app.add_option("--tls-key", options.credentials.key, "its private key, PEM");
-  app.add_option("--tls-ca", options.credentials.ca,
+  app.add_option("--tls-cert", options.listen.credentials.cert, "server certificate, PEM");
+  app.add_option("--tls-key", options.listen.credentials.key, "its private key, PEM");
+  app.add_option("--tls-ca", options.listen.credentials.ca,
                  "authority that clients' and workers' certificates must have");
-  app.add_option("--token-file", options.credentials.token_file,
-                 "file with the token that callers must send");
+  app.add_option(
+      "--token-file", options.listen.credentials.token_file,
+      "file of the tokens that callers must send, one a line: TOKEN USER ROLES [jobs=N] [tasks=N] [rate=N]");
+  app.add_flag("--insecure", options.listen.insecure,
+               "let other machines call without TLS and token: only where the network itself can be trusted");
+  app.add_option("--reserve", options.blobs.reserve_bytes, "of the store's disk that is kept free, e.g. 256M")
+      ->transform(CLI::AsSizeValue(false));
+  app.add_option("--keep", options.retention.keep_seconds, "finished jobs for so long, e.g. 720h")
+      ->transform(seconds_flag());
+  app.add_option("--keep-bytes", options.retention.keep_bytes,
+                 "of blobs, e.g. 100G; above it the oldest finished jobs go")
+      ->transform(CLI::AsSizeValue(false));
+  app.add_option("--keep-uploads", options.retention.keep_uploads_seconds,
+                 "uploads that no job names for so long, e.g. 24h")
+      ->transform(seconds_flag());
+  app.add_option("--silence", options.scheduler.silence_seconds,
+                 "after which a worker has lost its leases, e.g. 10s")
+      ->transform(seconds_flag());
+  app.add_option("--task-limit", options.scheduler.task_seconds,
+                 "after which a task is taken from a worker, e.g. 30m")
+      ->transform(seconds_flag());
   app.add_option("--log-level", options.log_level, "trace, debug, info, warning, error or off")
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))
       ->capture_default_str();
@@ -79,34 +110,48 @@ void block_signals() {
   signal(SIGPIPE, SIG_IGN);
 }
 
-absl::Status serve(const Options& options) {
+absl::Status serve(Options options) {
+  if (!options.listen.credentials.token_file.empty()) {
+    ASSIGN_OR_RETURN(options.listen.tokens, read_token_file(options.listen.credentials.token_file));
+  }
+  for (const TokenEntry& entry : options.listen.tokens) options.scheduler.quotas[entry.user] = entry.quota;
   ASSIGN_OR_RETURN(const StoreFolder folder, StoreFolder::open(options.store));
   ASSIGN_OR_RETURN(std::unique_ptr<JobStore> store, open_sqlite_store(folder.database()));
   ASSIGN_OR_RETURN(BlobFolder blobs, BlobFolder::open(folder.blobs()));
-  Coordinator coordinator(std::move(store), std::move(blobs), SchedulerLimits{}, now);
+  Coordinator coordinator(std::move(store), std::move(blobs), options.scheduler, now);
   RETURN_IF_ERROR(coordinator.start());
 
-  constexpr uint64_t kMostBlobBytes = uint64_t{1} << 36;
-  BlobsService blobs_service(coordinator.blobs(), kMostBlobBytes);
+  BlobsService blobs_service(coordinator.blobs(), options.blobs);
   RenderService render_service(coordinator);
   WorkerService worker_service(coordinator);
-  ASSIGN_OR_RETURN(Listener listener, listen(options.listen, options.credentials,
-                                             {&blobs_service, &render_service, &worker_service}));
+  ASSIGN_OR_RETURN(Listener listener,
+                   listen(options.listen, {&blobs_service, &render_service, &worker_service}));
   if (!options.address_file.empty())
     RETURN_IF_ERROR(write_file_atomically(options.address_file, listener.address + "\n"));
   spdlog::info("listening on {}, store {}", listener.address, options.store);
 
+  auto retention = std::make_unique<Retention>(coordinator, options.retention);
   wait_for_end(coordinator);
   const bool failed = coordinator.failed();
   spdlog::info("stopping");
   // Waiting workers are answered first: their calls would otherwise hold up the shutdown.
   coordinator.stop();
+  retention.reset();
   listener.server->Shutdown(std::chrono::system_clock::now() + std::chrono::seconds(1));
   if (failed) return absl::InternalError("the job store failed");
   return absl::OkStatus();
 }
 
+/// Results come and go by the hundred kilobytes: given back to the kernel each time, most of the time of
+/// receiving one would go into getting zeroed pages again.
+void keep_freed_memory() {
+  constexpr int kKept = 64 << 20, kLargestKept = 16 << 20;
+  mallopt(M_TRIM_THRESHOLD, kKept);
+  mallopt(M_MMAP_THRESHOLD, kLargestKept);
+}
+
 int run(int argc, char** argv) {
+  keep_freed_memory();
   Options options;
   CLI::App app(
       "Coordinates render jobs: splits them into tiles, leases the tiles to workers, keeps the results.");

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <iterator>
 
+#include "proto/auto_plan.h"
 #include "proto/status.h"
+#include "server/auto_planner.h"
 
 namespace penumbra {
 namespace {
@@ -44,6 +46,9 @@ uint64_t scramble(uint64_t seed, uint64_t value) {
   return z ^ (z >> 31);
 }
 
+/// Light samples of a pass of `auto`, before it is known what it will choose.
+constexpr int kNominalSamples = 4;
+
 /// CPU seconds that all mixes together are expected to spend on the image. For a CPU-seconds budget that
 /// is what the budget says; otherwise counted rays.
 double expected_seconds(const JobSpec& spec, const std::vector<int64_t>& passes) {
@@ -51,17 +56,16 @@ double expected_seconds(const JobSpec& spec, const std::vector<int64_t>& passes)
     return cpu->seconds * static_cast<double>(spec.mixes.size());
   double rays = 0;
   for (size_t m = 0; m < passes.size(); ++m)
-    rays += static_cast<double>(passes[m]) * (1 + spec.mixes[m].samples());
+    rays += static_cast<double>(passes[m]) *
+            (1 + (spec.mixes[m].automatic ? kNominalSamples : spec.mixes[m].samples()));
   return rays * static_cast<double>(spec.crop.area()) * kNominalSecondsPerRay;
 }
 
-/// Power of two, so that the patterns of a group are complete nets; 1 for independent samples, whose
-/// variance is best known from single passes.
-int64_t choose_group(const JobSpec& spec, const std::vector<int64_t>& passes, double tile_seconds) {
+/// For a run of at least `least` passes. Power of two, so that the patterns of a group are complete nets; 1
+/// for independent samples, whose variance is best known from single passes.
+int64_t choose_group(const JobSpec& spec, int64_t least, double seconds_per_pass) {
   if (spec.sampler == SamplerKind::kIndependent) return 1;
-  const int64_t least = *std::min_element(passes.begin(), passes.end());
-  const int64_t most = *std::max_element(passes.begin(), passes.end());
-  const double seconds_per_pass = tile_seconds / static_cast<double>(most);
+  if (spec.probe) return 1;  // its passes are repetitions
   int64_t group = 1;
   while (2 * group * kLeastGroups <= least &&
          static_cast<double>(2 * group) * seconds_per_pass <= kMostGroupSeconds)
@@ -99,6 +103,50 @@ int64_t passes_at(double share, int64_t passes, int64_t group) {
   return std::min(groups * group, passes);
 }
 
+/// Passes of the mixes that have the same in every pixel; of all mixes, if there is no such.
+std::vector<int64_t> common_passes(const JobSpec& spec, const std::vector<int64_t>& passes) {
+  std::vector<int64_t> common;
+  for (size_t m = 0; m < passes.size(); ++m)
+    if (!spec.mixes[m].automatic) common.push_back(passes[m]);
+  return common.empty() ? passes : common;
+}
+
+/// Mean over the pixels, rounded.
+int64_t mean_passes(const JobSpec& spec, const std::vector<PixelRect>& tiles,
+                    const std::vector<int64_t>& passes) {
+  double sum = 0;
+  for (size_t t = 0; t < tiles.size(); ++t)
+    sum += static_cast<double>(passes[t]) * static_cast<double>(tiles[t].area());
+  return std::llround(sum / static_cast<double>(spec.crop.area()));
+}
+
+std::vector<int64_t> tile_passes(const AutoPlan& plan) {
+  std::vector<int64_t> passes;
+  for (const TilePlan& tile : plan.tiles) passes.push_back(tile.passes);
+  return passes;
+}
+
+/// Each tile has groups of its own size: of few passes where few are planned.
+PlannedAuto planned_auto(const JobSpec& spec, const AutoPlan& plan, double seconds_per_pass) {
+  PlannedAuto planned{plan, {}};
+  for (const TilePlan& tile : plan.tiles)
+    planned.groups.push_back(choose_group(spec, tile.passes, seconds_per_pass));
+  return planned;
+}
+
+/// Passes of a tile at a share: ascending in it, so that boundaries need not remember them. The first range
+/// has a group of every tile, however few passes that tile has: then there is a whole picture.
+int64_t passes_at(double share, const PlannedAuto& planned, size_t tile) {
+  const int64_t passes = planned.plan.tiles[tile].passes, group = planned.groups[tile];
+  return std::max(std::min(group, passes), passes_at(share, passes, group));
+}
+
+std::vector<int64_t> passes_at(double share, const PlannedAuto& planned) {
+  std::vector<int64_t> passes;
+  for (size_t t = 0; t < planned.groups.size(); ++t) passes.push_back(passes_at(share, planned, t));
+  return passes;
+}
+
 absl::StatusOr<int64_t> passes_for_seconds(double budget, const std::vector<std::vector<MixCost>>& pilot,
                                            size_t mix) {
   double seconds_per_pass = 0;
@@ -128,16 +176,9 @@ absl::StatusOr<int64_t> passes_for_error(double relmse, const JobSpec& spec,
 
 }  // namespace
 
-std::vector<PixelRect> tiles_of(const JobSpec& spec) {
-  std::vector<PixelRect> tiles;
-  for (int y = spec.crop.y0; y < spec.crop.y1; y += spec.tile)
-    for (int x = spec.crop.x0; x < spec.crop.x1; x += spec.tile)
-      tiles.push_back({x, y, std::min(x + spec.tile, spec.crop.x1), std::min(y + spec.tile, spec.crop.y1)});
-  return tiles;
-}
-
 bool needs_pilot(const JobSpec& spec) {
-  return spec.plan.empty() && !std::holds_alternative<SppBudget>(spec.budget);
+  return spec.plan.empty() &&
+         (!std::holds_alternative<SppBudget>(spec.budget) || !automatic_mixes(spec.mixes).empty());
 }
 
 TileTask pilot_task(const JobSpec& spec, const std::vector<PixelRect>& tiles, uint64_t index) {
@@ -154,18 +195,36 @@ TileTask pilot_task(const JobSpec& spec, const std::vector<PixelRect>& tiles, ui
     task.pilot_seconds = kPilotShare * cpu->seconds * static_cast<double>(task.tile.area()) /
                          static_cast<double>(spec.crop.area());
   }
-  task.passes.assign(spec.mixes.size(), {0, passes});
+  const bool measured = !std::holds_alternative<SppBudget>(spec.budget);
+  for (const Mix& mix : spec.mixes) {
+    const bool whole =
+        std::holds_alternative<CpuSecondsBudget>(spec.budget) && index % kCalibrationTiles == 0;
+    task.passes.push_back({0, mix.automatic ? (whole ? 1 : 0) : (measured ? passes : 0)});
+  }
+  for (const int m : automatic_mixes(spec.mixes))
+    for (const Mix& candidate : auto_candidates()) task.chosen.push_back({m, candidate, 1});
+  if (!task.chosen.empty()) task.pilot_blocks = pilot_blocks(spec, task.tile);
   return task;
 }
 
-absl::StatusOr<std::vector<int64_t>> planned_passes(const JobSpec& spec,
-                                                    const std::vector<std::vector<MixCost>>& pilot) {
-  if (!spec.plan.empty()) return spec.plan;
-  if (const auto* spp = std::get_if<SppBudget>(&spec.budget))
-    return std::vector<int64_t>(spec.mixes.size(), spp->passes);
-  std::vector<int64_t> passes;
+size_t costs_of(const TileTask& task) {
+  return task.passes.size() + (task.kind == TaskKind::kPilot ? task.chosen.size() : 0);
+}
+
+absl::StatusOr<PlannedPasses> planned_passes(const JobSpec& spec,
+                                             const std::vector<std::vector<MixCost>>& pilot) {
+  if (!spec.plan.empty()) return PlannedPasses{spec.plan, spec.auto_plans};
+  PlannedPasses planned;
+  std::vector<int64_t>& passes = planned.passes;
+  const std::vector<PixelRect> tiles = tiles_of(spec);
   for (size_t m = 0; m < spec.mixes.size(); ++m) {
-    if (const auto* cpu = std::get_if<CpuSecondsBudget>(&spec.budget)) {
+    if (spec.mixes[m].automatic) {
+      ASSIGN_OR_RETURN(AutoPlan plan, plan_auto(spec, tiles, pilot, planned.autos.size()));
+      passes.push_back(std::max<int64_t>(1, mean_passes(spec, tiles, tile_passes(plan))));
+      planned.autos.push_back(std::move(plan));
+    } else if (const auto* spp = std::get_if<SppBudget>(&spec.budget)) {
+      passes.push_back(spp->passes);
+    } else if (const auto* cpu = std::get_if<CpuSecondsBudget>(&spec.budget)) {
       ASSIGN_OR_RETURN(const int64_t count, passes_for_seconds(cpu->seconds, pilot, m));
       passes.push_back(count);
     } else {
@@ -174,11 +233,12 @@ absl::StatusOr<std::vector<int64_t>> planned_passes(const JobSpec& spec,
       passes.push_back(count);
     }
   }
-  return passes;
+  return planned;
 }
 
-Plan make_plan(const JobSpec& spec, const std::vector<int64_t>& passes) {
+Plan make_plan(const JobSpec& spec, const std::vector<int64_t>& passes, const std::vector<AutoPlan>& autos) {
   PENUMBRA_CHECK(passes.size() == spec.mixes.size());
+  PENUMBRA_CHECK(autos.size() == automatic_mixes(spec.mixes).size());
   Plan plan;
   plan.passes = passes;
   const double seconds = expected_seconds(spec, passes);
@@ -186,23 +246,33 @@ Plan make_plan(const JobSpec& spec, const std::vector<int64_t>& passes) {
   const double tile_area =
       std::min<double>(static_cast<double>(spec.tile) * spec.tile, static_cast<double>(spec.crop.area()));
   const double tile_seconds = seconds * tile_area / static_cast<double>(spec.crop.area());
-  plan.group = choose_group(spec, passes, tile_seconds);
+  const double most = static_cast<double>(*std::max_element(passes.begin(), passes.end()));
+  const std::vector<int64_t> common = common_passes(spec, passes);
+  plan.group = choose_group(spec, *std::min_element(common.begin(), common.end()), tile_seconds / most);
+  for (const AutoPlan& a : autos) plan.autos.push_back(planned_auto(spec, a, tile_seconds / most));
   const double task_seconds = std::max(
       std::clamp(seconds / kTasksPerRun, kLeastTaskSeconds, kMostTaskSeconds), tile_seconds / kMostRanges);
-  const double most = static_cast<double>(*std::max_element(passes.begin(), passes.end()));
+  const std::vector<PixelRect> tiles = tiles_of(spec);
 
   std::vector<int64_t> before(passes.size(), 0);
+  std::vector<std::vector<int64_t>> before_autos(autos.size(), std::vector<int64_t>(tiles.size(), 0));
   for (const auto& [share, checkpoint] :
        boundary_shares(static_cast<double>(plan.group) / most, tile_seconds, task_seconds)) {
-    PassBoundary boundary{{}, checkpoint};
+    PassBoundary boundary{{}, checkpoint, share};
+    std::vector<std::vector<int64_t>> now;
+    for (const PlannedAuto& a : plan.autos) now.push_back(passes_at(share, a));
+    size_t automatic = 0;
     for (size_t m = 0; m < passes.size(); ++m)
-      boundary.passes.push_back(std::max(before[m], passes_at(share, passes[m], plan.group)));
-    if (boundary.passes == before) {
+      boundary.passes.push_back(spec.mixes[m].automatic
+                                    ? mean_passes(spec, tiles, now[automatic++])
+                                    : std::max(before[m], passes_at(share, passes[m], plan.group)));
+    if (now == before_autos && boundary.passes == before) {
       // Too few passes for this cut: the boundary that is already there serves the checkpoint.
       if (checkpoint && !plan.boundaries.empty()) plan.boundaries.back().checkpoint = true;
       continue;
     }
     before = boundary.passes;
+    before_autos = std::move(now);
     plan.boundaries.push_back(std::move(boundary));
   }
   // With large groups the cuts are few: then each of them is worth a look.
@@ -215,18 +285,27 @@ uint64_t task_count(const Plan& plan, const std::vector<PixelRect>& tiles) {
   return plan.boundaries.size() * tiles.size();
 }
 
+PassRange run_range(const Plan& plan, uint64_t range, uint64_t tile, size_t mix) {
+  for (const PlannedAuto& a : plan.autos) {
+    if (a.plan.mix != static_cast<int>(mix)) continue;
+    return {range == 0 ? 0 : passes_at(plan.boundaries[range - 1].share, a, tile),
+            passes_at(plan.boundaries[range].share, a, tile)};
+  }
+  return {range == 0 ? 0 : plan.boundaries[range - 1].passes[mix], plan.boundaries[range].passes[mix]};
+}
+
 TileTask run_task(const JobSpec& spec, const Plan& plan, const std::vector<PixelRect>& tiles,
                   uint64_t first_id, uint64_t index) {
   PENUMBRA_CHECK(index < task_count(plan, tiles));
   const uint64_t range = index / tiles.size();
   TileTask task;
   task.id = first_id + index;
-  task.tile = tiles[index % tiles.size()];
-  for (size_t m = 0; m < plan.passes.size(); ++m) {
-    const int64_t begin = range == 0 ? 0 : plan.boundaries[range - 1].passes[m];
-    task.passes.push_back({begin, plan.boundaries[range].passes[m]});
-  }
+  const uint64_t tile = index % tiles.size();
+  task.tile = tiles[tile];
+  for (size_t m = 0; m < plan.passes.size(); ++m) task.passes.push_back(run_range(plan, range, tile, m));
   task.group = plan.group;
+  for (const PlannedAuto& a : plan.autos)
+    task.chosen.push_back({a.plan.mix, a.plan.candidates[a.plan.tiles[tile].candidate], a.groups[tile]});
   task.shuffle = scramble(spec.seed, first_id + index);
   return task;
 }

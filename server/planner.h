@@ -6,45 +6,67 @@
 
 #include "absl/status/statusor.h"
 #include "proto/job.h"
+#include "proto/tiles.h"
 
 namespace penumbra {
 
-/// The job's tiles, row by row from the crop's upper left corner; those at the right and bottom edges may
-/// be smaller.
-std::vector<PixelRect> tiles_of(const JobSpec& spec);
-
-/// Whether pass counts must be measured first: a CPU-seconds or target-error budget without stored plan.
+/// Whether something must be measured first: for pass counts (a CPU-seconds or target-error budget), or for
+/// what an `auto` chooses; not with a stored plan.
 bool needs_pilot(const JobSpec& spec);
 
 /// Pilot task of tile `index`; its id is the index.
 TileTask pilot_task(const JobSpec& spec, const std::vector<PixelRect>& tiles, uint64_t index);
 
-/// Passes per mix. `pilot[tile][mix]` are the costs of all pilot tasks; empty where needs_pilot is false.
+/// Costs that a task must report: one per mix, and after them, for a pilot, one per candidate.
+size_t costs_of(const TileTask& task);
+
+/// Passes per mix, and the plans of the automatic ones (server/auto_planner.h).
+struct PlannedPasses {
+  std::vector<int64_t> passes;  ///< of an automatic mix: the mean over the pixels, rounded, at least 1
+  std::vector<AutoPlan> autos;
+};
+
+/// `pilot[tile]` are the costs of all pilot tasks; empty where needs_pilot is false. Of a mix that is not
+/// automatic:
 /// CPU seconds S: N = max(1, round(S / Σ_tiles seconds per pass)).
 /// Target error E: N = max(2, ceil(mean over pixels and channels of s²/(mean² + 1e-2) / E)), because the
 /// relMSE of an unbiased estimate with N passes is its one-pass value over N.
 /// Internal if a pilot has measured nothing.
-absl::StatusOr<std::vector<int64_t>> planned_passes(const JobSpec& spec,
-                                                    const std::vector<std::vector<MixCost>>& pilot);
+absl::StatusOr<PlannedPasses> planned_passes(const JobSpec& spec,
+                                             const std::vector<std::vector<MixCost>>& pilot);
 
 /// The end of one range of passes, common to all tiles.
 struct PassBoundary {
-  std::vector<int64_t> passes;  ///< cumulative, one per mix
+  std::vector<int64_t> passes;  ///< cumulative, one per mix; of an automatic mix the mean over the pixels
   bool checkpoint = false;      ///< a point of the error-against-time timeline
+  double share = 1;             ///< of all passes: how far the tiles of automatic mixes are
   bool operator==(const PassBoundary&) const = default;
+};
+
+/// An automatic mix in a plan: what each tile does.
+struct PlannedAuto {
+  AutoPlan plan;
+  std::vector<int64_t> groups;  ///< per tile: passes per independently scrambled group
+  bool operator==(const PlannedAuto&) const = default;
 };
 
 struct Plan {
   std::vector<int64_t> passes;           ///< per mix
-  int64_t group = 1;                     ///< passes per independently scrambled group
+  std::vector<PlannedAuto> autos;        ///< one per automatic mix, in their order
+  int64_t group = 1;                     ///< passes per independently scrambled group; not of `autos`
   std::vector<PassBoundary> boundaries;  ///< ascending; the last has all passes and is a checkpoint
   bool operator==(const Plan&) const = default;
 };
 
-Plan make_plan(const JobSpec& spec, const std::vector<int64_t>& passes);
+/// `autos`: one for each automatic mix, with a plan for each tile.
+Plan make_plan(const JobSpec& spec, const std::vector<int64_t>& passes,
+               const std::vector<AutoPlan>& autos = {});
 
 /// Number of run tasks: ranges × tiles.
 uint64_t task_count(const Plan& plan, const std::vector<PixelRect>& tiles);
+
+/// Passes of a mix in one tile and range.
+PassRange run_range(const Plan& plan, uint64_t range, uint64_t tile, size_t mix);
 
 /// Run task `index`, range-major: all tiles of the first range come first, so that a whole picture is
 /// there soon. Its id is first_id + index; ids are the order of merging.

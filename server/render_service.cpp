@@ -10,6 +10,7 @@
 #include "proto/rpc_status.h"
 #include "scenes/bundle.h"
 #include "server/assembler.h"
+#include "server/caller.h"
 #include "server/frame_stream.h"
 #include "server/job_report.h"
 
@@ -18,6 +19,8 @@ namespace {
 
 // A watcher hears of changes at most this often, and of nothing this seldom.
 constexpr double kLeastWatchSeconds = 0.2, kMostWatchSeconds = 5;
+// A job whose lost results are rendered again and that makes no progress for so long has no workers.
+constexpr double kMostQuietSeconds = 5;
 // Frames of one fetch that are kept in memory at a time.
 constexpr uint64_t kAssemblyBytes = uint64_t{1} << 30;
 // More tasks than this mean that the tiles are too small for the picture.
@@ -54,10 +57,12 @@ absl::StatusOr<JobSpec> checked_spec(const BlobFolder& blobs, const v1::SubmitRe
   if (request.request_id().empty() || request.request_id().size() > 128)
     return invalid_input("request_id: must have 1 to 128 characters");
   ASSIGN_OR_RETURN(JobSpec spec, from_proto(request.spec()));
-  for (const Mix& mix : spec.mixes)
-    if (mix.automatic) return invalid_input("mixes: this server does not plan `auto`");
-  if (tiles_of(spec).size() > kMostTiles)
+  const size_t tiles = tiles_of(spec).size();
+  if (tiles > kMostTiles)
     return invalid_input("tile: {} pixels make more than {} tiles of this picture", spec.tile, kMostTiles);
+  for (const AutoPlan& plan : spec.auto_plans)
+    if (plan.tiles.size() != tiles)
+      return invalid_input("auto_plans: {} tiles, where the job has {}", plan.tiles.size(), tiles);
   RETURN_IF_ERROR(check_bundle(blobs, spec));
   return spec;
 }
@@ -81,16 +86,27 @@ double thread_cpu_seconds() {
 
 }  // namespace
 
-grpc::Status RenderService::Submit(grpc::ServerContext*, const v1::SubmitRequest* request,
+grpc::Status RenderService::Submit(grpc::ServerContext* context, const v1::SubmitRequest* request,
                                    v1::SubmitResponse* response) {
   const absl::StatusOr<JobSpec> spec = checked_spec(coordinator_.blobs(), *request);
   if (!spec.ok()) return to_grpc(spec.status());
+  absl::StatusOr<JobTerms> terms = from_proto(request->terms());
+  if (!terms.ok()) return to_grpc(terms.status());
+  if (const Caller caller = caller_of(*context); caller.known) terms->user = caller.user;
   // What the job needs must outlive the power before the job does. Uploads made their blobs durable.
-  const absl::StatusOr<JobId> id = coordinator_.call([&](Scheduler& scheduler, const Now& now) -> JobId {
+  const auto id = flat(coordinator_.call([&](Scheduler& scheduler, const Now& now) -> absl::StatusOr<JobId> {
+    if (const JobId* made = scheduler.find_request(request->request_id())) return *made;
+    for (const JobId& before : terms->after) {
+      const JobRecord* job = scheduler.find(before);
+      if (job == nullptr) return invalid_input("after: no job {}", before);
+      if (job->final() && job->header.state != JobState::kDone)
+        return invalid_input("after: job {} is {}", before, name_of(job->header.state));
+    }
+    RETURN_IF_ERROR(scheduler.check_quota(terms->user));
     JobId fresh = new_job_id();
     while (scheduler.find(fresh) != nullptr) fresh = new_job_id();
-    return scheduler.submit(fresh, request->request_id(), *spec, now);
-  });
+    return scheduler.submit(fresh, request->request_id(), *spec, now, *terms);
+  }));
   if (!id.ok()) return to_grpc(id.status());
   response->set_job(*id);
   return grpc::Status::OK;
@@ -146,10 +162,16 @@ grpc::Status RenderService::ListJobs(grpc::ServerContext*, const v1::ListJobsReq
   return grpc::Status::OK;
 }
 
-grpc::Status RenderService::Cancel(grpc::ServerContext*, const v1::JobRequest* request,
+grpc::Status RenderService::Cancel(grpc::ServerContext* context, const v1::JobRequest* request,
                                    v1::JobStatus* response) {
+  const Caller caller = caller_of(*context);
   const auto found =
       flat(coordinator_.call([&](Scheduler& scheduler, const Now& now) -> absl::StatusOr<JobStatus> {
+        const JobRecord* job = scheduler.find(request->job());
+        if (job != nullptr && !caller.may_touch(job->header.terms.user))
+          return make_status(absl::StatusCode::kPermissionDenied,
+                             "job {} is user {}'s; cancelling it takes an admin", request->job(),
+                             job->header.terms.user);
         RETURN_IF_ERROR(scheduler.cancel(request->job(), now));
         return status_of(scheduler, *scheduler.find(request->job()), now);
       }));
@@ -171,7 +193,42 @@ grpc::Status RenderService::Explain(grpc::ServerContext*, const v1::JobRequest* 
   return grpc::Status::OK;
 }
 
-grpc::Status RenderService::FetchFrames(grpc::ServerContext*, const v1::FetchFramesRequest* request,
+grpc::Status RenderService::Log(grpc::ServerContext*, const v1::LogRequest* request,
+                                v1::LogResponse* response) {
+  const auto lines =
+      flat(coordinator_.call([&](Scheduler& scheduler, const Now&) -> absl::StatusOr<std::vector<LogLine>> {
+        const JobRecord* job = scheduler.find(request->job());
+        if (job == nullptr) return no_job(request->job());
+        return std::vector<LogLine>(job->log.begin(), job->log.end());
+      }));
+  if (!lines.ok()) return to_grpc(lines.status());
+  for (const LogLine& line : *lines) *response->add_lines() = to_proto(line);
+  return grpc::Status::OK;
+}
+
+/// What the disk has not kept is rendered again. Waits for that as long as the caller does and something
+/// happens; Unavailable in any case, because what was sent until now must be asked for anew.
+absl::Status RenderService::restore_lost(const JobId& id, const Assembly& assembly,
+                                         const grpc::ServerContext& context) {
+  const auto lost = lost_results(assembly, coordinator_.blobs());
+  const auto count = coordinator_.call([&](Scheduler& scheduler, const Now& now) {
+    scheduler.lose_results(id, lost, now);
+    return lost.size();
+  });
+  RETURN_IF_ERROR(count.status());
+  uint64_t done = 0;
+  for (double quiet = 0; quiet < kMostQuietSeconds && !context.IsCancelled(); quiet += kLeastWatchSeconds) {
+    ASSIGN_OR_RETURN(const JobStatus now, status(id));
+    if (is_final(now.state)) break;
+    if (std::exchange(done, now.tasks_done) != now.tasks_done) quiet = 0;
+    std::this_thread::sleep_for(std::chrono::duration<double>(kLeastWatchSeconds));
+  }
+  return make_status(absl::StatusCode::kUnavailable,
+                     "job {}: the server's disk has not kept {} results; they are rendered again", id,
+                     *count);
+}
+
+grpc::Status RenderService::FetchFrames(grpc::ServerContext* context, const v1::FetchFramesRequest* request,
                                         grpc::ServerWriter<v1::FetchFramesResponse>* writer) {
   struct Taken {
     RunSummary summary;
@@ -191,6 +248,8 @@ grpc::Status RenderService::FetchFrames(grpc::ServerContext*, const v1::FetchFra
   if (status.ok() && !request->summary_only())
     status = assemble(taken->assembly, coordinator_.blobs(), request->checkpoints(), kAssemblyBytes,
                       [&](const AssembledFrame& frame) { return stream.frame(frame); });
+  if (absl::IsDataLoss(status) || absl::IsNotFound(status))
+    status = restore_lost(request->job(), taken->assembly, *context);
   if (status.ok()) status = stream.end(taken->scheduler_cpu_seconds + thread_cpu_seconds() - started);
   return to_grpc(status);
 }

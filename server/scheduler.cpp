@@ -11,8 +11,8 @@ namespace {
 /// Whether the result is what the task asked for.
 absl::Status check_result(const TileTask& task, const CompletedTask& done,
                           const absl::StatusOr<ResultShape>& shape) {
-  if (done.costs.size() != task.passes.size())
-    return invalid_input("{} costs for {} mixes", done.costs.size(), task.passes.size());
+  if (done.costs.size() != costs_of(task))
+    return invalid_input("{} costs, where the task has {}", done.costs.size(), costs_of(task));
   if (task.kind == TaskKind::kPilot) return absl::OkStatus();
   if (!shape.ok()) return shape.status();
   if (shape->rect != task.tile) return invalid_input("the result covers another tile");
@@ -32,7 +32,23 @@ void Scheduler::put(Change change) {
 }
 
 std::vector<Change> Scheduler::take_changes() {
+  for (const JobId& id : std::exchange(touched_, {}))
+    if (const JobRecord* job = find(id)) changes_.push_back(PutJob{job->header});
   return std::exchange(changes_, {});
+}
+
+/// Into the job's log, and to the operator.
+void Scheduler::note(JobRecord& job, std::optional<uint64_t> task, const std::string& worker,
+                     const std::string& text, const Now& now) {
+  job.append_log({now.unix_time, task, worker, text});
+  notices_.push_back(fmt::format("job={}{}{} {}", job.header.id, task ? fmt::format(" task={}", *task) : "",
+                                 worker.empty() ? "" : " worker=" + worker, text));
+}
+
+/// The job's counters, to be stored with whatever is stored next.
+FaultCounts& Scheduler::count_fault(JobRecord& job) {
+  touched_.insert(job.header.id);
+  return job.header.faults;
 }
 
 const JobRecord* Scheduler::find(const JobId& id) const {
@@ -42,19 +58,6 @@ const JobRecord* Scheduler::find(const JobId& id) const {
 
 JobRecord* Scheduler::find_job(const JobId& id) {
   return const_cast<JobRecord*>(find(id));
-}
-
-uint64_t Scheduler::pending() const {
-  uint64_t sum = 0;
-  for (const JobId& id : order_) sum += find(id)->pending();
-  return sum;
-}
-
-int Scheduler::cores() const {
-  int sum = 0;
-  for (const auto& [id, worker] : workers_)
-    if (!worker.draining) sum += worker.info.cores;
-  return sum;
 }
 
 absl::Status Scheduler::restore(const StoredState& stored, const Now& now) {
@@ -77,25 +80,27 @@ absl::Status Scheduler::restore(const StoredState& stored, const Now& now) {
     requests_[kept.header.request_id] = kept.header.id;
     JobRecord& record = *(jobs_[kept.header.id] = std::move(job));
     if (record.final()) continue;
-    order_.push_back(kept.header.id);
+    order_.push_back(&record);
     advance(record, now);
   }
   return absl::OkStatus();
 }
 
-JobId Scheduler::submit(const JobId& id, const std::string& request_id, const JobSpec& spec, const Now& now) {
+JobId Scheduler::submit(const JobId& id, const std::string& request_id, const JobSpec& spec, const Now& now,
+                        const JobTerms& terms) {
   if (const auto it = requests_.find(request_id); it != requests_.end()) return it->second;
   PENUMBRA_CHECK(!jobs_.contains(id));
   JobHeader header;
   header.id = id;
   header.request_id = request_id;
   header.spec = spec;
+  header.terms = terms;
   header.submitted_unix = now.unix_time;
   auto job = std::make_unique<JobRecord>(std::move(header));
   job->scheduler_cpu_base = now.process_cpu;
   requests_[request_id] = id;
-  order_.push_back(id);
   JobRecord& record = *(jobs_[id] = std::move(job));
+  order_.push_back(&record);
   put(PutJob{record.header});
   advance(record, now);
   return id;
@@ -116,6 +121,7 @@ void Scheduler::finish(JobRecord& job, JobState state, FailureKind failure, std:
         ++it;
         continue;
       }
+      put(DropLease{{job.header.id, it->first.second, it->second}});
       job.release(it->first.second);
       it = worker.leases.erase(it);
     }
@@ -126,8 +132,42 @@ void Scheduler::finish(JobRecord& job, JobState state, FailureKind failure, std:
   job.header.finished_unix = now.unix_time;
   job.header.scheduler_cpu_seconds += now.process_cpu - job.scheduler_cpu_base;
   job.scheduler_cpu_base = now.process_cpu;
-  std::erase(order_, job.header.id);
+  std::erase(order_, &job);
   put(PutJob{job.header});
+  note(job, std::nullopt, "",
+       fmt::format("{}{}{}", name_of(state), job.header.message.empty() ? "" : ": ", job.header.message),
+       now);
+}
+
+void Scheduler::forget(const JobId& id) {
+  const JobRecord* job = find(id);
+  if (job == nullptr || !job->final()) return;
+  requests_.erase(job->header.request_id);
+  touched_.erase(id);
+  jobs_.erase(id);
+  put(DropJob{id});
+  notices_.push_back(fmt::format("job={} forgotten", id));
+}
+
+void Scheduler::lose_results(const JobId& id, const std::vector<std::pair<uint64_t, Digest>>& lost,
+                             const Now& now) {
+  JobRecord* job = find_job(id);
+  if (job == nullptr) return;
+  for (const auto& [task, digest] : lost) {
+    if (task >= job->results().size() || job->is_pilot(task)) continue;
+    const auto& result = job->results()[task];
+    if (!result || result->result != digest) continue;
+    note(*job, task, "", fmt::format("the disk has not kept its result {}", digest), now);
+    job->lose(task);
+    put(DropResult{{id, task, job->task(task)->epoch}});
+    ++count_fault(*job).corrupt_results;
+  }
+  if (job->header.state != JobState::kDone || job->all_done()) return;
+  job->header.state = JobState::kRunning;
+  job->header.finished_unix = 0;
+  job->scheduler_cpu_base = now.process_cpu;
+  order_.push_back(job);
+  put(PutJob{job->header});
 }
 
 /// Plans when the pilot is done, ends the job when everything is.
@@ -143,77 +183,6 @@ void Scheduler::advance(JobRecord& job, const Now& now) {
   if (job.all_done()) finish(job, JobState::kDone, FailureKind::kNone, "", now);
 }
 
-std::optional<double> Scheduler::next_expiry() const {
-  std::optional<double> next;
-  for (const auto& [id, worker] : workers_)
-    next = std::min(next.value_or(worker.last_seen), worker.last_seen);
-  if (next) *next += limits_.silence_seconds;
-  return next;
-}
-
-void Scheduler::expire(const Now& now) {
-  std::vector<std::string> silent;
-  for (const auto& [id, worker] : workers_)
-    if (now.steady - worker.last_seen >= limits_.silence_seconds) silent.push_back(id);
-  for (const std::string& id : silent) end_worker(id, now);
-  std::erase_if(retired_,
-                [&](const auto& entry) { return now.steady - entry.second >= limits_.retired_seconds; });
-}
-
-void Scheduler::end_lease(WorkerRecord& worker, JobRecord& job, uint64_t task) {
-  put(DropLease{{job.header.id, task, job.task(task)->epoch}});
-  job.release(task);
-  worker.leases.erase({job.header.id, task});
-}
-
-void Scheduler::end_worker(const std::string& id, const Now& now) {
-  const auto it = workers_.find(id);
-  WorkerRecord& worker = it->second;
-  while (!worker.leases.empty()) {
-    const auto [job_id, task] = worker.leases.begin()->first;
-    JobRecord& job = *find_job(job_id);
-    const bool begun = job.task(task)->begun;
-    end_lease(worker, job, task);
-    if (!begun) continue;
-    Blame& blame = job.blames[task];
-    blame.deaths.insert(id);
-    if (blame.deaths.size() >= limits_.deaths)
-      finish(job, JobState::kFailed, FailureKind::kJobFailed,
-             fmt::format("task {}: {} workers died while they rendered it; the last was {} on {}", task,
-                         blame.deaths.size(), worker.name, worker.info.host),
-             now);
-  }
-  const Identity identity{worker.info.host, worker.name};
-  if (const auto latest = incarnations_.find(identity); latest != incarnations_.end() && latest->second == id)
-    incarnations_.erase(latest);
-  workers_.erase(it);
-  ++revision_;
-}
-
-absl::StatusOr<WorkerRecord*> Scheduler::meet(const WorkerState& state, const Now& now) {
-  const std::string& id = state.worker.id;
-  if (retired_.contains(id))
-    return make_status(absl::StatusCode::kFailedPrecondition,
-                       "a newer incarnation of worker {} on {} is at work", state.name, state.worker.host);
-  const Identity identity{state.worker.host, state.name};
-  if (const auto it = incarnations_.find(identity); it != incarnations_.end() && it->second != id) {
-    const std::string old = it->second;
-    end_worker(old, now);
-    retired_[old] = now.steady;
-  }
-  incarnations_[identity] = id;
-  const bool known = workers_.contains(id);
-  WorkerRecord& worker = workers_[id];
-  if (!known) ++revision_;
-  if (worker.draining != state.draining) ++revision_;
-  worker.info = state.worker;
-  worker.name = state.name;
-  worker.version = state.version;
-  worker.last_seen = now.steady;
-  worker.draining = state.draining;
-  return &worker;
-}
-
 absl::Status Scheduler::report(const WorkerState& state,
                                const std::vector<absl::StatusOr<ResultShape>>& shapes, const Now& now) {
   PENUMBRA_CHECK(shapes.size() == state.completed.size());
@@ -226,12 +195,13 @@ absl::Status Scheduler::report(const WorkerState& state,
     JobHeader& header = find_job(worker.leases.begin()->first.first)->header;
     if (header.first_lease_unix != 0) header.worker_cpu_seconds += spent;
   }
-  worker.process_cpu_seconds = state.process_cpu_seconds;
+  // A message that was overtaken by a later one must not count the time between twice.
+  worker.process_cpu_seconds = std::max(worker.process_cpu_seconds, state.process_cpu_seconds);
   for (const HeldLease& held : state.held) {
     JobRecord* job = find_job(held.lease.job);
     const auto mine = worker.leases.find({held.lease.job, held.lease.task});
     if (held.begun && mine != worker.leases.end() && mine->second == held.lease.epoch)
-      job->mark_begun(held.lease.task);
+      job->mark_begun(held.lease.task, now);
   }
   for (const LoadedScene& scene : state.loaded) take_load(scene);
   for (size_t i = 0; i < state.completed.size(); ++i) complete(worker, state.completed[i], shapes[i], now);
@@ -242,13 +212,17 @@ absl::Status Scheduler::report(const WorkerState& state,
 void Scheduler::complete(WorkerRecord& worker, const CompletedTask& done,
                          const absl::StatusOr<ResultShape>& shape, const Now& now) {
   const auto mine = worker.leases.find({done.lease.job, done.lease.task});
-  if (mine == worker.leases.end() || mine->second != done.lease.epoch) return;  // fenced
+  if (mine == worker.leases.end() || mine->second != done.lease.epoch) {  // fenced
+    if (JobRecord* job = find_job(done.lease.job)) ++count_fault(*job).late_results;
+    return;
+  }
   JobRecord& job = *find_job(done.lease.job);
   const TileTask task = job.description(done.lease.task);
   const absl::Status status = check_result(task, done, shape);
   if (absl::IsNotFound(status)) return;  // not acknowledged: it will be uploaded again
   if (!status.ok()) {
     end_lease(worker, job, done.lease.task);
+    ++count_fault(job).refused_results;
     blame_failure(job, done.lease.task, worker, message_of(status), now);
     return;
   }
@@ -257,6 +231,12 @@ void Scheduler::complete(WorkerRecord& worker, const CompletedTask& done,
     put(PutWorker{worker.info});
   }
   worker.leases.erase(mine);
+  worker.failed_jobs.clear();
+  worker.failures = 0;
+  double seconds = 0;
+  for (const MixCost& cost : done.costs) seconds += cost.cpu_seconds;
+  job.append_log(
+      {now.unix_time, done.lease.task, worker.identity(), fmt::format("done in {:.3g} CPU s", seconds)});
   job.accept(done.lease.task, {done.result, done.costs, worker.info.id});
   put(PutResult{done.lease, done.result, done.costs, worker.info.id});
   if (task.kind == TaskKind::kRun) {
@@ -273,26 +253,20 @@ void Scheduler::fail(WorkerRecord& worker, const FailedTask& failed, const Now& 
   end_lease(worker, job, failed.lease.task);
   switch (failed.reason) {
     case TaskFailure::kReturned:
+      ++count_fault(job).returned_leases;
+      note(job, failed.lease.task, worker.identity(), "handed back: " + failed.message, now);
+      return;
+    case TaskFailure::kLostInput:
+      finish(job, JobState::kFailed, FailureKind::kJobFailed, failed.message, now);
       return;
     case TaskFailure::kBadInput:
       finish(job, JobState::kFailed, FailureKind::kBadInput, failed.message, now);
       return;
     case TaskFailure::kError:
+      ++count_fault(job).failures;
       blame_failure(job, failed.lease.task, worker, failed.message, now);
       return;
   }
-}
-
-void Scheduler::blame_failure(JobRecord& job, uint64_t task, const WorkerRecord& worker,
-                              const std::string& message, const Now& now) {
-  Blame& blame = job.blames[task];
-  blame.reporters.insert(worker.info.id);
-  ++blame.reports;
-  if (blame.reporters.size() < limits_.failing_workers && blame.reports < limits_.failures) return;
-  finish(job, JobState::kFailed, FailureKind::kJobFailed,
-         fmt::format("task {} failed {} times on {} workers; the last was {} on {}: {}", task, blame.reports,
-                     blame.reporters.size(), worker.name, worker.info.host, message),
-         now);
 }
 
 void Scheduler::take_load(const LoadedScene& scene) {
@@ -305,25 +279,6 @@ void Scheduler::take_load(const LoadedScene& scene) {
     return s.mix < 0 || s.mix >= static_cast<int>(job->spec().mixes.size());
   });
   put(PutJob{job->header});
-}
-
-void Scheduler::grant(WorkerRecord& worker, uint32_t wanted, const Now& now) {
-  // Towards the end nobody hoards: what is left is shared by the cores.
-  if (pending() < static_cast<uint64_t>(cores()))
-    wanted = std::min(wanted, static_cast<uint32_t>(worker.info.cores));
-  const LeaseHolder holder{worker.info.id, worker.info.host, worker.name};
-  for (const JobId& id : order_) {
-    JobRecord& job = *find_job(id);
-    while (worker.leases.size() < wanted && job.pending() > 0) {
-      const LeaseId lease = job.lease(worker.info.id);
-      worker.leases[{id, lease.task}] = lease.epoch;
-      const JobState state = job.is_pilot(lease.task) ? JobState::kPilot : JobState::kRunning;
-      const bool first_of_run = state == JobState::kRunning && job.header.first_lease_unix == 0;
-      if (first_of_run) job.header.first_lease_unix = now.unix_time;
-      if (std::exchange(job.header.state, state) != state || first_of_run) put(PutJob{job.header});
-      put(PutLease{lease, holder});
-    }
-  }
 }
 
 SyncAnswer Scheduler::answer(const WorkerState& state, const Now& now) {

@@ -1,5 +1,6 @@
 #include "server/sqlite_store.h"
 
+#include <iterator>
 #include <map>
 
 #include "server/sqlite.h"
@@ -8,19 +9,31 @@
 namespace penumbra {
 namespace {
 
-constexpr uint64_t kSchema = 1;
+// Pages of the write-ahead log after which it is copied into the database: while nothing waits, and in any
+// case before it has grown to the second.
+constexpr int kCheckpointPages = 1000, kMostPages = 16'000;
 
+// The schema's history: statement i takes a database from version i to i + 1, so a new one runs them all and
+// an old one those that it lacks. A statement that has been released is never changed.
+//
 // A lease row outlives its lease (worker = ''), because the epoch fences late results; it goes when the
 // task's result is accepted, which keeps the epoch itself.
-constexpr const char* kTables = R"sql(
+constexpr const char* kMigrations[] = {
+    R"sql(
   CREATE TABLE jobs (number INTEGER PRIMARY KEY, id TEXT UNIQUE NOT NULL, header BLOB NOT NULL);
   CREATE TABLE leases (job TEXT NOT NULL, task INTEGER NOT NULL, epoch INTEGER NOT NULL,
     worker TEXT NOT NULL, host TEXT NOT NULL, name TEXT NOT NULL, PRIMARY KEY (job, task)) WITHOUT ROWID;
   CREATE TABLE results (job TEXT NOT NULL, task INTEGER NOT NULL, epoch INTEGER NOT NULL,
     result TEXT NOT NULL, costs BLOB NOT NULL, worker TEXT NOT NULL, PRIMARY KEY (job, task)) WITHOUT ROWID;
   CREATE TABLE workers (id TEXT PRIMARY KEY, info BLOB NOT NULL) WITHOUT ROWID;
-  PRAGMA user_version = 1;
-)sql";
+)sql",
+    // Failures count over restarts.
+    R"sql(
+  CREATE TABLE blames (job TEXT NOT NULL, task INTEGER NOT NULL, who TEXT NOT NULL, death INTEGER NOT NULL,
+    count INTEGER NOT NULL, PRIMARY KEY (job, task, who, death)) WITHOUT ROWID;
+)sql",
+};
+constexpr uint64_t kSchema = std::size(kMigrations);
 
 struct CloseDatabase {
   void operator()(sqlite3* db) const { sqlite3_close_v2(db); }
@@ -46,6 +59,18 @@ class SqliteStore final : public JobStore {
     RETURN_IF_ERROR(make(forget_lease_, "DELETE FROM leases WHERE job = ? AND task = ?"));
     // A second result of a task would break "accepted once": let the statement fail, not the law.
     RETURN_IF_ERROR(make(put_result_, "INSERT INTO results VALUES(?, ?, ?, ?, ?, ?)"));
+    RETURN_IF_ERROR(make(put_blame_,
+                         "INSERT INTO blames VALUES(?, ?, ?, ?, 1) "
+                         "ON CONFLICT(job, task, who, death) DO UPDATE SET count = count + 1"));
+    for (size_t i = 0; i < std::size(kOfJobs); ++i) RETURN_IF_ERROR(make(drop_job_[i], kOfJobs[i]));
+    sqlite3_wal_hook(
+        db_.get(),
+        [](void* self, sqlite3*, const char*, int pages) {
+          static_cast<SqliteStore*>(self)->log_pages_ = pages;
+          return SQLITE_OK;
+        },
+        this);
+    RETURN_IF_ERROR(make(drop_result_, "DELETE FROM results WHERE job = ? AND task = ?"));
     return make(put_worker_, "INSERT OR REPLACE INTO workers VALUES(?, ?)");
   }
 
@@ -59,8 +84,11 @@ class SqliteStore final : public JobStore {
     }
     const absl::Status status = execute(db_.get(), "COMMIT");
     if (!status.ok()) sqlite3_exec(db_.get(), "ROLLBACK", nullptr, nullptr, nullptr);
+    if (status.ok() && log_pages_ >= kMostPages) return checkpoint();
     return status;
   }
+
+  absl::Status rest() override { return log_pages_ >= kCheckpointPages ? checkpoint() : absl::OkStatus(); }
 
   absl::StatusOr<StoredState> load() override {
     StoredState state;
@@ -82,6 +110,12 @@ class SqliteStore final : public JobStore {
       ASSIGN_OR_RETURN(std::vector<MixCost> costs, parse_costs(row.text(4)));
       state.jobs[number[row.text(0)]].results.push_back(
           {{row.text(0), row.number(1), row.number(2)}, row.text(3), std::move(costs), row.text(5)});
+      return absl::OkStatus();
+    }));
+    RETURN_IF_ERROR(each("SELECT * FROM blames", [&](Statement& row) -> absl::Status {
+      if (number.contains(row.text(0)))
+        state.jobs[number[row.text(0)]].blames.push_back(
+            {{row.text(0), row.number(1), row.text(2), row.number(3) != 0}, row.number(4)});
       return absl::OkStatus();
     }));
     RETURN_IF_ERROR(each("SELECT info FROM workers", [&](Statement& row) -> absl::Status {
@@ -118,12 +152,39 @@ class SqliteStore final : public JobStore {
     put_result_->bind(put.lease.job).bind(put.lease.task).bind(put.lease.epoch).bind(put.result);
     return put_result_->bind_blob(serialize_costs(put.costs)).bind(put.worker).run();
   }
+  absl::Status write(const DropResult& drop) {
+    RETURN_IF_ERROR(drop_result_->bind(drop.lease.job).bind(drop.lease.task).run());
+    return write(PutLease{drop.lease, {}});
+  }
+  absl::Status write(const PutBlame& put) {
+    return put_blame_->bind(put.job).bind(put.task).bind(put.who).bind(uint64_t{put.death}).run();
+  }
+  absl::Status write(const DropJob& drop) {
+    for (const auto& statement : drop_job_) RETURN_IF_ERROR(statement->bind(drop.job).run());
+    return absl::OkStatus();
+  }
   absl::Status write(const PutWorker& put) {
     return put_worker_->bind(put.worker.id).bind_blob(serialize_worker(put.worker)).run();
   }
 
+  /// The log's pages go into the database, which makes room to write the log anew from its start. Nobody
+  /// reads beside this thread, so none can be held up.
+  absl::Status checkpoint() {
+    if (sqlite3_wal_checkpoint_v2(db_.get(), nullptr, SQLITE_CHECKPOINT_RESTART, nullptr, nullptr) !=
+        SQLITE_OK)
+      return sqlite_error(db_.get(), "checkpoint");
+    log_pages_ = 0;
+    return absl::OkStatus();
+  }
+
+  static constexpr const char* kOfJobs[] = {
+      "DELETE FROM jobs WHERE id = ?", "DELETE FROM leases WHERE job = ?",
+      "DELETE FROM results WHERE job = ?", "DELETE FROM blames WHERE job = ?"};
+  int log_pages_ = 0;
   Database db_;  // outlives the statements below
-  std::unique_ptr<Statement> put_job_, put_lease_, drop_lease_, forget_lease_, put_result_, put_worker_;
+  std::unique_ptr<Statement> put_job_, put_lease_, drop_lease_, forget_lease_, put_result_, drop_result_,
+      put_blame_, put_worker_;
+  std::unique_ptr<Statement> drop_job_[std::size(kOfJobs)];
 };
 
 absl::Status make_schema(sqlite3* db) {
@@ -134,10 +195,15 @@ absl::Status make_schema(sqlite3* db) {
   const uint64_t found = row ? version.number(0) : 0;
   if (found > kSchema)
     return invalid_input("job store: its schema {} is newer than this program's {}", found, kSchema);
-  if (found == kSchema) return absl::OkStatus();
-  RETURN_IF_ERROR(execute(db, "BEGIN IMMEDIATE"));
-  RETURN_IF_ERROR(execute(db, kTables));
-  return execute(db, "COMMIT");
+  for (uint64_t step = found; step < kSchema; ++step) {
+    RETURN_IF_ERROR(execute(db, "BEGIN IMMEDIATE"));
+    RETURN_IF_ERROR(execute(db, kMigrations[step]));
+    RETURN_IF_ERROR(execute(db, fmt::format("PRAGMA user_version = {}", step + 1).c_str()));
+    RETURN_IF_ERROR(execute(db, "COMMIT"));
+  }
+  // Copying the log is a matter of rest() and apply(), never of whichever commit happens to be the
+  // thousandth.
+  return execute(db, "PRAGMA wal_autocheckpoint = 0");
 }
 
 }  // namespace

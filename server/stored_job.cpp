@@ -28,6 +28,8 @@ std::string serialize_header(const JobHeader& header) {
   status.message = header.message;
   status.plan = header.passes;
   status.submitted_unix_seconds = header.submitted_unix;
+  status.faults = header.faults;
+  status.terms = header.terms;
   *out.mutable_status() = to_proto(status);
   if (header.loaded) *out.mutable_loaded() = to_proto({header.id, header.load, header.substitutions});
   out.set_first_lease_unix(header.first_lease_unix);
@@ -36,6 +38,7 @@ std::string serialize_header(const JobHeader& header) {
   out.set_finished_unix(header.finished_unix);
   out.set_worker_cpu_seconds(header.worker_cpu_seconds);
   out.set_scheduler_cpu_seconds(header.scheduler_cpu_seconds);
+  for (const AutoPlan& plan : header.auto_plans) *out.add_auto_plans() = to_proto(plan);
   return out.SerializeAsString();
 }
 
@@ -51,6 +54,8 @@ absl::StatusOr<JobHeader> parse_header(std::string_view bytes) {
   header.message = std::move(status.message);
   header.passes = std::move(status.plan);
   header.submitted_unix = status.submitted_unix_seconds;
+  header.faults = status.faults;
+  header.terms = std::move(status.terms);
   header.loaded = message.has_loaded();
   if (header.loaded) {
     ASSIGN_OR_RETURN(LoadedScene scene, from_proto(message.loaded()));
@@ -63,6 +68,7 @@ absl::StatusOr<JobHeader> parse_header(std::string_view bytes) {
   header.finished_unix = message.finished_unix();
   header.worker_cpu_seconds = message.worker_cpu_seconds();
   header.scheduler_cpu_seconds = message.scheduler_cpu_seconds();
+  ASSIGN_OR_RETURN(header.auto_plans, auto_plans_from_proto(message.auto_plans(), header.spec.mixes));
   return header;
 }
 

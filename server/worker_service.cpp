@@ -11,10 +11,10 @@ namespace {
 absl::StatusOr<ResultShape> shape_of(const BlobFolder& blobs, const CompletedTask& task) {
   if (task.result.empty()) return ResultShape{};  // a pilot; the scheduler refuses it for anything else
   // Verified when they were uploaded, moments ago, and again when they are merged.
-  ASSIGN_OR_RETURN(const std::string bytes, blobs.read_unverified(task.result));
-  ASSIGN_OR_RETURN(const TileResult result, parse_tile_result(bytes));
+  ASSIGN_OR_RETURN(std::string bytes, blobs.read_unverified(task.result));
+  ASSIGN_OR_RETURN(const ReceivedTile result, ReceivedTile::parse(std::move(bytes)));
   ResultShape shape;
-  for (const TilePixels& mix : result.mixes) {
+  for (const TileView& mix : result.mixes()) {
     if (!shape.passes.empty() && mix.rect != shape.rect)
       return invalid_input("result {}: its mixes cover different tiles", task.result);
     shape.rect = mix.rect;

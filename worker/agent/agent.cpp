@@ -33,6 +33,13 @@ bool is_refusal(const absl::Status& status) {
          absl::IsUnauthenticated(status) || absl::IsPermissionDenied(status) || absl::IsUnimplemented(status);
 }
 
+TaskFailure failure_of(const absl::Status& status) {
+  if (absl::IsInvalidArgument(status)) return TaskFailure::kBadInput;
+  // The server's copy of the scene is gone or corrupt: no worker can do better.
+  if (absl::IsDataLoss(status)) return TaskFailure::kLostInput;
+  return TaskFailure::kError;
+}
+
 }  // namespace
 
 Agent::Agent(AgentOptions options, const std::shared_ptr<grpc::Channel>& channel, BlobFolder cache,
@@ -42,8 +49,7 @@ Agent::Agent(AgentOptions options, const std::shared_ptr<grpc::Channel>& channel
       cache_(std::move(cache)),
       blobs_(channel),
       scenes_(blobs_, cache_, loader, options_.threads, options_.scenes),
-      // One to render and one to go on with, for each thread.
-      board_(2 * static_cast<uint32_t>(options_.threads)),
+      board_(options_.threads),
       deadline_(std::numeric_limits<double>::infinity()) {}
 
 Agent::~Agent() {
@@ -170,11 +176,9 @@ void Agent::render_loop() {
     if (assignment->cancel || (outcome.ok() && outcome->cancelled)) {
       board_.drop(*assignment);
     } else if (!outcome.ok()) {
-      const bool scene_fault = absl::IsInvalidArgument(outcome.status());
       spdlog::warn("job {} task {}: {}", assignment->lease.job, assignment->lease.task,
                    message_of(outcome.status()));
-      board_.fail(*assignment, scene_fault ? TaskFailure::kBadInput : TaskFailure::kError,
-                  message_of(outcome.status()));
+      board_.fail(*assignment, failure_of(outcome.status()), message_of(outcome.status()));
     } else {
       hand_in(assignment, *std::move(outcome));
     }
@@ -229,14 +233,16 @@ void Agent::upload_loop() {
 /// Tries for as long as the server is away and the lease is ours.
 void Agent::upload(const ToUpload& item) {
   Finished& finished = *item.finished;
-  if (finished.report.result.empty()) {
-    Sha256 hash;
-    hash.add(finished.bytes);
-    finished.report.result = hash.hex();
-  }
-  for (;;) {
+  if (finished.report.result.empty()) finished.report.result = sha256(finished.bytes);
+  for (bool told_full = false;;) {
     const absl::Status status = blobs_.upload(finished.report.result, finished.bytes);
-    const bool again = absl::IsUnavailable(status) || absl::IsAborted(status) || absl::IsCancelled(status);
+    // A server whose disk is full keeps what it has and takes more when there is room again.
+    const bool full = absl::IsResourceExhausted(status);
+    if (full && !std::exchange(told_full, true))
+      spdlog::warn("job {} task {}: {}; trying again", finished.report.lease.job, finished.report.lease.task,
+                   message_of(status));
+    const bool again =
+        full || absl::IsUnavailable(status) || absl::IsAborted(status) || absl::IsCancelled(status);
     const bool cancelled = item.assignment && item.assignment->cancel;
     if (stopping_) return;
     if (!item.assignment) {

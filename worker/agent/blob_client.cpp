@@ -13,6 +13,11 @@ namespace {
 // A bundle's index; 10,000 files with long names have two megabytes.
 constexpr uint64_t kMostIndexBytes = 64 << 20;
 
+/// What the server sent is not what it was asked for: its disk's fault, not the scene's.
+absl::Status sent_corrupt(const absl::Status& status) {
+  return make_status(absl::StatusCode::kDataLoss, "the server sent {}", message_of(status));
+}
+
 }  // namespace
 
 absl::Status BlobClient::upload(const Digest& digest, std::string_view bytes) const {
@@ -50,12 +55,25 @@ absl::Status BlobClient::download(const Digest& digest, uint64_t size, const Blo
   const absl::Status received = from_grpc(reader->Finish());
   RETURN_IF_ERROR(status);
   RETURN_IF_ERROR(received);
-  return writer->finish();
+  const absl::Status finished = writer->finish();
+  return absl::IsInvalidArgument(finished) ? sent_corrupt(finished) : finished;
+}
+
+/// Other processes and the disk have had the cache since: read once in this process before it is believed.
+bool BlobClient::whole(const Digest& digest, const BlobFolder& folder) const {
+  {
+    const std::lock_guard lock(mutex_);
+    if (verified_.contains(digest)) return true;
+  }
+  if (!folder.verify(digest).ok()) return false;  // and it is gone: fetch it again
+  const std::lock_guard lock(mutex_);
+  verified_.insert(digest);
+  return true;
 }
 
 absl::Status BlobClient::fetch(const Digest& digest, uint64_t size, const BlobFolder& folder) const {
   for (;;) {
-    if (folder.size(digest) == size) return absl::OkStatus();
+    if (folder.size(digest) == size && whole(digest, folder)) return absl::OkStatus();
     const absl::Status status = download(digest, size, folder);
     if (!absl::IsAborted(status)) return status;
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -80,7 +98,9 @@ absl::StatusOr<std::string> BlobClient::fetch_small(const Digest& digest, const 
     }
   }
   RETURN_IF_ERROR(from_grpc(reader->Finish()));
-  RETURN_IF_ERROR(folder.put(digest, bytes));
+  const absl::Status kept = folder.put(digest, bytes);
+  if (absl::IsInvalidArgument(kept)) return sent_corrupt(kept);
+  RETURN_IF_ERROR(kept);
   return bytes;
 }
 

@@ -23,12 +23,20 @@ absl::StatusOr<BundleIndex> fetch_bundle(const BlobClient& blobs, const BlobFold
   return index;
 }
 
+/// What says that the server's copy of the scene is not whole: DataLoss, whatever it was.
+absl::Status lost_input(const absl::Status& status) {
+  if (!absl::IsNotFound(status) && !absl::IsDataLoss(status)) return status;
+  return make_status(absl::StatusCode::kDataLoss,
+                     "the server has lost a file of the scene, submit it again: {}", message_of(status));
+}
+
 /// Tries again for as long as the server is away.
 absl::StatusOr<BundleIndex> fetch_patiently(const BlobClient& blobs, const BlobFolder& folder,
                                             const Digest& bundle, const std::function<bool()>& give_up) {
   for (;;) {
     absl::StatusOr<BundleIndex> index = fetch_bundle(blobs, folder, bundle);
-    if (!absl::IsUnavailable(index.status())) return index;
+    if (index.ok()) return index;
+    if (!absl::IsUnavailable(index.status())) return lost_input(index.status());
     if (give_up()) return absl::CancelledError("given up while the server was away");
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
   }

@@ -14,7 +14,7 @@ void TaskBoard::describe(WorkerState& state) {
   for (const auto& [lease, failed] : failed_) state.failed.push_back(failed);
   for (const auto& [job, scene] : loads_) state.loaded.push_back(scene);
   for (const auto& [job, spec] : jobs_) state.known_jobs.push_back(job);
-  state.wanted = draining_ ? 0 : wanted_;
+  state.wanted = draining_ ? 0 : wanted_ - std::min(wanted_, lost_threads());
   state.draining = draining_;
   news_ = false;
 }
@@ -36,6 +36,7 @@ std::vector<std::shared_ptr<Finished>> TaskBoard::apply(const DesiredState& desi
     const auto it = held_.find(held.lease);
     if (it == held_.end() || wanted.contains(held.lease)) continue;
     it->second.assignment->cancel = true;
+    it->second.lost = true;
     if (!it->second.begun) held_.erase(it);  // the others go when their thread notices
   }
   std::vector<std::shared_ptr<Finished>> missing;
@@ -62,6 +63,14 @@ std::vector<std::shared_ptr<Finished>> TaskBoard::apply(const DesiredState& desi
     reported_loads_.erase(job);
   }
   return missing;
+}
+
+/// Leases that the threads would take which still render something that nobody wants any more. Most notice
+/// within a pass; one that never does must not sit on leases for ever.
+uint32_t TaskBoard::lost_threads() const {
+  const auto lost =
+      std::count_if(held_.begin(), held_.end(), [](const auto& held) { return held.second.lost; });
+  return kLeasesPerThread * static_cast<uint32_t>(lost);
 }
 
 bool TaskBoard::full() const {

@@ -31,8 +31,10 @@ struct Finished {
 
 class TaskBoard {
  public:
-  /// `wanted`: leases to hold while not draining.
-  explicit TaskBoard(uint32_t wanted) : wanted_(wanted) {}
+  /// One to render and one to go on with.
+  static constexpr uint32_t kLeasesPerThread = 2;
+
+  explicit TaskBoard(int threads) : wanted_(kLeasesPerThread * static_cast<uint32_t>(threads)) {}
 
   // For the Sync loop.
 
@@ -75,12 +77,14 @@ class TaskBoard {
   struct Held {
     std::shared_ptr<Assignment> assignment;
     bool begun = false;
+    bool lost = false;  ///< cancelled by the server; its thread has not noticed yet
   };
+  uint32_t lost_threads() const;
   void hand_back(const LeaseId& lease, std::string message);
 
   mutable std::mutex mutex_;
   std::condition_variable work_, news_cv_;
-  uint32_t wanted_;
+  uint32_t wanted_;  ///< leases to hold while not draining
   bool draining_ = false, closed_ = false, news_ = true;
   std::map<LeaseId, Held> held_;
   std::map<LeaseId, std::shared_ptr<Finished>> completed_;

@@ -5,12 +5,24 @@
 #include "proto/status.h"
 #include "worker/geometry/embree_scene.h"
 #include "worker/geometry/line_query.h"
+#include "worker/geometry/line_fan.h"
+#include "worker/geometry/shaft_list.h"
 
 namespace penumbra {
 namespace {
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Whole chords, but for those seen end on.
+void all_visible(std::span<const LineQuery> queries, std::vector<IntervalSet>& out) {
+  out.resize(queries.size());
+  for (size_t i = 0; i < queries.size(); ++i) {
+    const Vec3d x(queries[i].x);
+    out[i].clear();
+    if (has_area(Vec3d(queries[i].a) - x, Vec3d(queries[i].b) - x)) out[i].reset();
+  }
 }
 
 }  // namespace
@@ -64,6 +76,32 @@ bool Geometry::has_alpha() const {
 void Geometry::visible(std::span<const LineQuery> queries, std::vector<IntervalSet>& out,
                        QueryCounters& counters) const {
   visible_lines(parts_->lines, parts_->path, queries, out, counters);
+}
+
+void Geometry::enter(const ShaftQuery& query, Shaft& shaft, QueryCounters& counters) const {
+  shaft.content_ = enter_shaft(parts_->lines, parts_->path, query, *shaft.parts_, counters);
+}
+
+void Geometry::visible(const Shaft& shaft, std::span<const LineQuery> queries, std::vector<IntervalSet>& out,
+                       QueryCounters& counters) const {
+  switch (shaft.content_) {
+    case ShaftContent::kClear:
+      return all_visible(queries, out);
+    case ShaftContent::kHidden:
+      out.resize(queries.size());
+      for (IntervalSet& set : out) set.clear();
+      return;
+    case ShaftContent::kFew:
+      return visible_in_list(parts_->lines, parts_->path, shaft.parts_->list, queries, out, counters);
+    case ShaftContent::kMany:
+      return visible(queries, out, counters);
+  }
+}
+
+bool Geometry::occluded(const Shaft& shaft, const Vec3f& x, const Vec3f& y, QueryCounters& counters) const {
+  // Alpha-tested meshes are in no list.
+  if (shaft.content_ == ShaftContent::kClear) return occluded_by_alpha(x, y, counters);
+  return shaft.content_ == ShaftContent::kHidden || occluded(x, y, counters);
 }
 
 Geometry::BuildTimes Geometry::build_times() const {

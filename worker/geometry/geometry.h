@@ -69,6 +69,9 @@ struct QueryCounters {
   uint64_t nodes_visited = 0, triangles_tested = 0;
 };
 
+class Shaft;
+struct ShaftQuery;
+
 /// Immutable after build; every query is const and may run on any number of threads.
 class Geometry {
  public:
@@ -95,6 +98,15 @@ class Geometry {
   /// result of each does not depend on the others. `out` is resized to queries.size().
   void visible(std::span<const LineQuery> queries, std::vector<IntervalSet>& out,
                QueryCounters& counters) const;
+
+  /// Finds what can hide any of a flat light from x; see shaft.h. The shaft then answers for chords and
+  /// points of that light as visible() and occluded() do, to the bit, mostly for less.
+  void enter(const ShaftQuery& query, Shaft& shaft, QueryCounters& counters) const;
+  /// As visible(queries, …), for chords from the shaft's x on the shaft's light, on its side of the horizon.
+  void visible(const Shaft& shaft, std::span<const LineQuery> queries, std::vector<IntervalSet>& out,
+               QueryCounters& counters) const;
+  /// As occluded(x, y), for the shaft's x and a y on its light, on its side of the horizon.
+  bool occluded(const Shaft& shaft, const Vec3f& x, const Vec3f& y, QueryCounters& counters) const;
 
   struct BuildTimes {
     double embree_seconds = 0, line_bvh_seconds = 0;

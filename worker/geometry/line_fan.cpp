@@ -130,6 +130,14 @@ LineFan make_fan(const Vec3d& x, const Vec3d& a, const Vec3d& b, double reach) {
   return fan;
 }
 
+bool has_area(const Vec3d& a, const Vec3d& b) {
+  // With |N| above 2^-20 of the longer side's square, none of make_fan's conditions fails by rounding: N·N
+  // comes out within 2^-53 |A-B| |A| / |N| < 2^-31 of itself. Floats' differences neither under- nor overflow.
+  const double longer = std::max(largest(a), largest(b));
+  if (largest(a.cross(b)) > 0x1p-20 * longer * longer) return true;
+  return !make_fan(Vec3d(0, 0, 0), a, b, 0).degenerate;
+}
+
 Interval hidden_near_ends(const LineFan& fan, const Vec3f p[3], int odd) {
   Vec3d q[3];
   for (int i = 0; i < 3; ++i) q[i] = Vec3d(p[i]) - fan.x_exact;

@@ -37,6 +37,9 @@ struct LineFan {
 /// Fan of (x, x+a, x+b) in the coordinates of one tree. `reach`: no vertex is farther from x than this.
 LineFan make_fan(const Vec3d& x, const Vec3d& a, const Vec3d& b, double reach);
 
+/// !make_fan(x, a, b, …).degenerate, for less.
+bool has_area(const Vec3d& a, const Vec3d& b);
+
 /// What triangle p hides: v in [lo,hi], clamped to [0,1]; lo >= hi if nothing. Neighbours that share an
 /// edge answer with the same bits at that edge.
 Interval hidden_by_triangle(const LineFan& fan, const Vec3f p[3]);

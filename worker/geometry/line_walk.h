@@ -58,35 +58,38 @@ class LineWalk {
     const FanBlock fan_block(fan);
     const bool world = &tree == &bvh_.world;
     if (world && workspace_.occluder_tree == bvh_.id) {
-      test(fan_block, tree, {&workspace_.occluder, 1}, excluded, visible_.hull());
+      test(fan_block, tree, {&workspace_.occluder, 1}, excluded);
       if (visible_.empty()) return;
     }
     walk(tree, fan, stack_base, leaves_base, [&](const uint32_t* found, int count, uint32_t*, uint32_t*) {
-      test(fan_block, tree, {found, static_cast<size_t>(count)}, excluded, visible_.hull());
+      test(fan_block, tree, {found, static_cast<size_t>(count)}, excluded);
     });
   }
 
   /// Takes from the visible set what some blocks hide of it.
   void test(const FanBlock& fan_block, const LineTree& tree, std::span<const uint32_t> blocks,
-            const Excluded& excluded, Interval hull) {
+            const Excluded& excluded) {
     for (const uint32_t block : blocks) {
+      const Interval hull = visible_.hull();
       if (fan_block.hidden(tree.blocks[block], excluded, hull.lo, hull.hi, hidden_, widest_)) {
         occluder_ = block;
         occluder_world_ = &tree == &bvh_.world;
       }
+      counters_.triangles_tested += kWidth;
+      fan_block.settle(hidden_, hull.lo, hull.hi);
+      // Block by block: one is mostly cut in one connected stretch, and the next has less left to look at.
+      if (hidden_.empty() || !hidden_.flush(visible_)) continue;
+      ++version_;
+      if (visible_.empty()) return;
     }
-    counters_.triangles_tested += kWidth * blocks.size();
-    fan_block.settle(hidden_, hull.lo, hull.hi);
-    if (!hidden_.empty() && hidden_.flush(visible_)) ++version_;
   }
 
   /// Visits the leaves that the visible part of the fan meets. `use` may narrow it, and gets the free parts
   /// of the two buffers for a walk of its own.
   template <class Use>
   void walk(const LineTree& tree, const LineFan& fan, uint32_t* stack_base, uint32_t* leaves, Use use) {
-    FanBoxes boxes(fan, tree);
+    FanBoxes boxes(fan, tree, visible_.hull());
     uint64_t version = version_;
-    boxes.narrow(visible_.hull());
     boxes.skip(visible_.widest_gap());
     uint32_t* stack = stack_base;
     *stack++ = 0;
@@ -101,7 +104,11 @@ class LineWalk {
       const uint32_t met0 = boxes.meeting(node0), met1 = pair ? boxes.meeting(node1) : 0;
       const int found = push(node0, met0, stack, leaves, 0);
       const int all = push(node1, met1, stack, leaves, found);
+      for (const uint32_t* next = stack; next != stack_base && next != stack - 2;) fetch(tree.nodes[*--next]);
       if (all == 0) continue;
+      if (!tree.blocks.empty()) {
+        for (int i = 0; i < all; ++i) fetch(tree.blocks[leaves[i]]);
+      }
       use(leaves, all, stack, leaves + 2 * kWidth);
       if (version == version_) continue;
       if (visible_.empty()) return;
@@ -111,12 +118,24 @@ class LineWalk {
     }
   }
 
+  /// Asks for all of a node or block, soon to be used: they lie apart, and a query meets most of them cold.
+  template <class T>
+  static void fetch(const T& item) {
+    constexpr size_t line = 64;
+    const char* bytes = reinterpret_cast<const char*>(&item);
+    for (size_t at = 0; at < sizeof(T); at += line) _mm_prefetch(bytes + at, _MM_HINT_T0);
+  }
+
   /// Inner nodes go on the stack, leaves behind the `found` ones; returns how many of these there are.
   static int push(const LineNode& node, uint32_t met, uint32_t*& stack, uint32_t* leaves, int found) {
-    Simd::compress(stack, met & ~node.leaves, node.child);
-    stack += std::popcount(met & ~node.leaves);
-    Simd::compress(leaves + found, met & node.leaves, node.child);
-    return found + std::popcount(met & node.leaves);
+    for (; met != 0; met &= met - 1) {
+      const int lane = std::countr_zero(met);
+      const uint32_t leaf = node.leaves >> lane & 1;
+      *stack = leaves[found] = node.child[lane];
+      stack += 1 - leaf;
+      found += static_cast<int>(leaf);
+    }
+    return found;
   }
 
   const LineBvh& bvh_;

@@ -64,6 +64,12 @@ double Filter::Axis::sample(double u, double& weight) const {
   return -radius + (double(i) + t) * step;
 }
 
+Filter Filter::centre() {
+  Filter filter;
+  for (Axis& axis : filter.axes_) axis.radius = 0;
+  return filter;
+}
+
 FilterSample Filter::sample(const Vec2d& u) const {
   FilterSample s;
   s.offset.x = axes_[0].sample(u.x, s.weight);

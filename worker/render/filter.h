@@ -22,6 +22,9 @@ class Filter {
   /// a warning. InvalidArgument for a radius that is not positive and finite.
   static absl::StatusOr<Filter> build(const SceneDescription& description, std::vector<std::string>& warnings);
 
+  /// The pixel's centre, always.
+  static Filter centre();
+
   FilterSample sample(const Vec2d& u) const;
   Vec2d radius() const { return {axes_[0].radius, axes_[1].radius}; }
 

@@ -32,7 +32,7 @@ absl::StatusOr<ScenePtr> build_scene(const SceneDescription& description, const 
 
 struct TaskOutcome {
   TileResult pixels;            ///< empty for a pilot
-  std::vector<MixCost> costs;   ///< one per mix
+  std::vector<MixCost> costs;   ///< one per mix; of a pilot, then one per candidate in task.chosen
   bool cancelled = false;       ///< then nothing else is valid
 };
 

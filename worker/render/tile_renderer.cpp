@@ -1,14 +1,16 @@
 // One tile task: all its mixes on this thread, in slices of passes, interleaved at random, so that the
 // machine's drift meets every mix alike (design §7).
-#include <time.h>
 #include <x86intrin.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "proto/status.h"
-#include "worker/render/light_pixels.h"
-#include "worker/render/path.h"
+#include "worker/render/calibration.h"
+#include "worker/render/candidate_pilot.h"
+#include "worker/render/integrand.h"
+#include "worker/render/pixel_sampler.h"
+#include "worker/render/thread_clock.h"
 #include "worker/render/tile_accumulator.h"
 
 namespace penumbra {
@@ -17,39 +19,28 @@ namespace {
 /// Passes of one mix between two looks at another: short enough to interleave, long enough to warm up.
 constexpr int64_t kSlice = 4;
 
-/// Camera rays of a pass for the emission of a pixel that may see a light. Its variance falls with their number,
-/// and such a pixel has little else to pay for: at sixteen the outline of cornell-box's light no longer leads
-/// the image's error, and costs below 2 % of a pass.
-constexpr int kEmissionRays = 16;
-
-double thread_cpu_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+/// What is rendered at a mix's place in this tile.
+struct Rendered {
+  const Mix& mix;
+  int64_t group;
+};
+Rendered rendered(const JobSpec& job, const TileTask& task, size_t index) {
+  if (job.mixes[index].automatic)
+    for (const ChosenMix& chosen : task.chosen)
+      if (chosen.mix == int(index)) return {chosen.chosen, chosen.group};
+  return {job.mixes[index], task.group};
 }
-
-bool is_finite(const Rgb& c) { return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z); }
 
 /// The passes of one mix over one tile.
 class MixRun {
  public:
-  MixRun(const Scene& scene, const JobSpec& job, const TileTask& task, const Camera& camera,
-         const std::vector<uint8_t>& light_pixels, size_t mix)
-      : scene_(scene),
-        job_(job),
-        task_(task),
-        camera_(camera),
-        light_pixels_(light_pixels),
-        mix_index_(uint32_t(mix)),
-        prepared_(job.mixes[mix], scene.lights),
-        tracer_(scene, prepared_, job.max_depth, counters_),
-        accumulator_(task.tile, task.group),
-        next_(task.passes[mix].begin),
-        end_(task.passes[mix].end) {}
+  MixRun(const Rendering& rendering, const TileTask& task, size_t index)
+      : MixRun(rendering, task, index, rendered(rendering.job, task, index)) {}
 
   int64_t left() const { return end_ - next_; }
   void stop() { end_ = next_; }
   double cpu_seconds() const { return cost_.cpu_seconds; }
+  Calibration& calibration() { return cost_.calibration; }
 
   void pass() {
     const double start = thread_cpu_seconds();
@@ -65,7 +56,7 @@ class MixRun {
   /// Forgets a pilot's first pass: it paid for cold caches and first touches of memory.
   void forget() {
     accumulator_ = TileAccumulator(task_.tile, task_.group);
-    counters_ = {};
+    sampler_.counters() = {};
     cost_ = {};
   }
 
@@ -75,22 +66,23 @@ class MixRun {
   }
   MixCost cost() {
     accumulator_.finish();
-    cost_.rays = counters_.rays;
-    cost_.line_queries = counters_.line_queries;
+    cost_.rays = sampler_.counters().rays;
+    cost_.line_queries = sampler_.counters().line_queries;
     cost_.relative_variance = accumulator_.relative_variance();
     return cost_;
   }
 
  private:
+  MixRun(const Rendering& rendering, const TileTask& task, size_t index, const Rendered& what)
+      : task_(task),
+        sampler_(rendering, what.mix, index, what.group),
+        accumulator_(task.tile, what.group),
+        next_(task.passes[index].begin),
+        end_(task.passes[index].end) {}
+
   void sample(int x, int y, size_t pixel) {
     const uint64_t start = __rdtsc();
-    const uint32_t index = uint32_t(y) * uint32_t(job_.width) + uint32_t(x);
-    const PassSampler sampler(job_.sampler, job_.seed, mix_index_, task_.kind, index, next_, task_.group);
-    const FilterSample filter = scene_.filter->sample(sampler.film());
-    const Vec2d centre(x + 0.5, y + 0.5);
-    const bool apart = light_pixels_[pixel] != 0;
-    Rgb value = tracer_.radiance(ray(centre, filter), sampler, !apart) * float(filter.weight);
-    if (apart) value += emission(centre, sampler);
+    Rgb value = sampler_.sample(x, y, next_);
     if (!is_finite(value)) {
       ++cost_.non_finite;
       value = Rgb(0);
@@ -98,33 +90,9 @@ class MixRun {
     accumulator_.add(pixel, value, __rdtsc() - start);
   }
 
-  CameraRay ray(const Vec2d& centre, const FilterSample& filter) const {
-    Vec2d at = centre + filter.offset;
-    if (const double cells = job_.camera_grid; cells > 0)
-      at = Vec2d(std::floor(at.x * cells) + 0.5, std::floor(at.y * cells) + 0.5) / cells;
-    return camera_.ray(at);
-  }
-
-  /// Mean emission over the pixel's filter, from rays of its own.
-  Rgb emission(const Vec2d& centre, const PassSampler& sampler) {
-    Rgb sum(0);
-    for (int i = 0; i < kEmissionRays; ++i) {
-      const FilterSample filter = scene_.filter->sample(sampler.film(i, kEmissionRays));
-      sum += tracer_.emission(ray(centre, filter)) * float(filter.weight);
-    }
-    return sum / float(kEmissionRays);
-  }
-
-  const Scene& scene_;
-  const JobSpec& job_;
   const TileTask& task_;
-  const Camera& camera_;
-  const std::vector<uint8_t>& light_pixels_;  ///< of the tile
-  uint32_t mix_index_;
-  PreparedMix prepared_;
-  QueryCounters counters_;
+  PixelSampler sampler_;
   MixCost cost_;
-  PathTracer tracer_;
   TileAccumulator accumulator_;
   int64_t next_, end_;
 };
@@ -145,6 +113,22 @@ std::vector<size_t> interleaving(const TileTask& task) {
   uint64_t state = task.shuffle;
   for (size_t i = slices.size(); i > 1; --i) std::swap(slices[i - 1], slices[next_random(state) % i]);
   return slices;
+}
+
+/// Costs of all candidates, in the task's order; those of one automatic mix stand together. False: cancelled.
+bool run_candidates(const Rendering& rendering, const TileTask& task, const std::atomic<bool>& cancel,
+                    std::vector<MixCost>& costs) {
+  for (size_t begin = 0; begin < task.chosen.size();) {
+    std::vector<ChosenMix> candidates;
+    for (; begin < task.chosen.size(); ++begin) {
+      if (!candidates.empty() && candidates[0].mix != task.chosen[begin].mix) break;
+      candidates.push_back(task.chosen[begin]);
+    }
+    const std::vector<MixCost> measured = measure_candidates(rendering, task, candidates, cancel);
+    if (measured.empty()) return false;
+    costs.insert(costs.end(), measured.begin(), measured.end());
+  }
+  return true;
 }
 
 /// A pilot measures until its time is up, at least one pass; the first is thrown away if there is time.
@@ -169,18 +153,20 @@ bool run_pilot(std::vector<std::unique_ptr<MixRun>>& runs, double seconds, const
 TaskOutcome render_tile(const Scene& scene, const JobSpec& job, const TileTask& task,
                         const std::atomic<bool>& cancel) {
   PENUMBRA_CHECK(task.passes.size() == job.mixes.size());
+  if (job.probe && job.probe->kind == Probe::Kind::kIntegrand) return render_integrand(scene, job, task, cancel);
   TaskOutcome outcome;
   const auto camera = Camera::build(scene.description, job.width, job.height);
   PENUMBRA_CHECK(camera.ok());  // build_scene() has tried it
-  const std::vector<uint8_t> seeing = light_pixels(scene, *camera, task.tile);
+  const Rendering rendering(scene, job, *camera, task);
   std::vector<std::unique_ptr<MixRun>> runs;
-  for (size_t m = 0; m < job.mixes.size(); ++m)
-    runs.push_back(std::make_unique<MixRun>(scene, job, task, *camera, seeing, m));
+  for (size_t m = 0; m < job.mixes.size(); ++m) runs.push_back(std::make_unique<MixRun>(rendering, task, m));
 
   if (task.kind == TaskKind::kPilot) {
     outcome.cancelled = !run_pilot(runs, task.pilot_seconds, cancel);
   } else {
+    CalibrationClock calibration;
     for (size_t m : interleaving(task)) {
+      calibration.before_slice(runs[m]->calibration());
       for (int64_t p = std::min(kSlice, runs[m]->left()); p > 0; --p) {
         if (cancel.load(std::memory_order_relaxed)) {
           outcome.cancelled = true;
@@ -192,6 +178,8 @@ TaskOutcome render_tile(const Scene& scene, const JobSpec& job, const TileTask& 
     for (auto& run : runs) outcome.pixels.mixes.push_back(run->pixels());
   }
   for (auto& run : runs) outcome.costs.push_back(run->cost());
+  if (task.kind == TaskKind::kPilot && !outcome.cancelled)
+    outcome.cancelled = !run_candidates(rendering, task, cancel, outcome.costs);
   return outcome;
 }
 

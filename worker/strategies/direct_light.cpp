@@ -131,10 +131,11 @@ Rgb DirectLight::ask(const Task& task, const PassSampler& sampler, int depth) {
   candidates_.clear();
   own_lines_.clear();
   integrated_ = Rgb(0);
+  sight_.skip();
   start_combiner(task);
   // With drawn lights the material's hits are asked on their own, once.
   if (task.turns.empty() || !scene_.lights.draws()) gather_bsdf(task);
-  if (!task.turns.empty()) {
+  if (!task.turns.empty() && may_reach(task)) {
     gather_points(task, sampler, depth);
     gather_lines(task, sampler, depth);
   }
@@ -187,7 +188,7 @@ void DirectLight::choose_lines(const Task& task, const PassSampler& sampler, int
 void DirectLight::gather_lines(const Task& task, const PassSampler& sampler, int depth) {
   choose_lines(task, sampler, depth);
   if (own_lines_.size() == 0) return;
-  own_lines_.trace(scene_.geometry, counters_);
+  own_lines_.trace(scene_.geometry, sight_.for_lines(), counters_);
   size_t line = 0;
   for (size_t s = 0; s < mix_.slots(); ++s) {
     const PreparedMix::Slot slot = task.slot(mix_, s);
@@ -243,7 +244,7 @@ void DirectLight::resolve(const Task& task) {
             foreign_lines_.add(line_through(strategy, task.view, candidates_[c].sample.at.p),
                                task.view.point(), task.view.area());
       }
-    if (foreign_lines_.size() > 0) foreign_lines_.trace(scene_.geometry, counters_);
+    if (foreign_lines_.size() > 0) foreign_lines_.trace(scene_.geometry, sight_.for_lines(), counters_);
   }
   densities_.assign(candidates_.size() * slots, 0);
   for (size_t c = 0; c < candidates_.size(); ++c) densities(task, candidates_[c], &densities_[c * slots]);
@@ -293,12 +294,28 @@ void DirectLight::densities(const Task& task, Candidate& c, double* row) {
   }
 }
 
+bool DirectLight::may_reach(const Task& task) {
+  if (!task.view.is_area() || !scene_.lights.shafts) return true;
+  VisibilityWork work;
+  for (size_t s = 0; s < mix_.slots(); ++s) {
+    const PreparedMix::Slot slot = task.slot(mix_, s);
+    const int samples = slot.count * int(task.turns.size());
+    if (is_line(slot.strategy)) work.lines += samples;
+    else if (!is_bsdf(slot.strategy)) work.rays += samples;
+  }
+  return sight_.look(scene_.geometry, task.view.point(), task.view.area(), task.light, work, counters_);
+}
+
 bool DirectLight::clear(const Task& task, const LightSample& sample) {
   const Vec3f& origin = task.view.point().origin(sample.wi);
   if (!task.view.is_area())
     return !scene_.geometry.occluded(origin, origin + sample.wi * scene_.lights.reach(), counters_);
-  if (task.view.area().flat)
-    return !scene_.geometry.occluded(origin, end_on_light(sample.at, task.view.x()), counters_);
+  if (task.view.area().flat) {
+    const Vec3f end = end_on_light(sample.at, task.view.x());
+    const Shaft* shaft = sight_.for_rays(origin);
+    return !(shaft != nullptr ? scene_.geometry.occluded(*shaft, origin, end, counters_)
+                              : scene_.geometry.occluded(origin, end, counters_));
+  }
   // A curved light is traced as a tessellation that the sampled point is not on: it is visible if the
   // light is the first thing met.
   const Ray ray{origin, sample.wi, 0, std::numeric_limits<float>::infinity()};
@@ -342,6 +359,7 @@ DirectLight::Integrand DirectLight::integrand(const ShadingPoint& point, size_t 
   const LightSample sample = towards(view, {on_light, emission_normal(emitter.shape, on_light), 0});
   candidates_.assign(1, {sample, point.scatter(sample.wi) * sample.radiance, mix_.slots(), kNoLine});
   own_lines_.clear();
+  sight_.skip();
   resolve(task);
   start_combiner(task);
   Integrand out{candidates_[0].f, candidates_[0].smoothing, densities_, {}};

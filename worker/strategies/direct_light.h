@@ -7,6 +7,7 @@
 #include "worker/sampling/sampler.h"
 #include "worker/strategies/combination.h"
 #include "worker/strategies/light_set.h"
+#include "worker/strategies/light_sight.h"
 #include "worker/strategies/line_batch.h"
 #include "worker/strategies/prepared_mix.h"
 #include "worker/strategies/shading_point.h"
@@ -91,6 +92,8 @@ class DirectLight {
   void resolve(const Task& task);
   void densities(const Task& task, Candidate& candidate, double* row);
   bool integrates(const Strategy& strategy) const;
+  /// False: no sample of the light can count here.
+  bool may_reach(const Task& task);
   bool clear(const Task& task, const LightSample& sample);
   Rgb combine();
   void start_combiner(const Task& task);
@@ -102,6 +105,7 @@ class DirectLight {
 
   std::vector<BsdfHit> hits_;
   std::vector<Candidate> candidates_;
+  LightSight sight_;
   LineBatch own_lines_, foreign_lines_;
   std::vector<size_t> foreign_;     ///< row per candidate, a handle per slot
   std::vector<double> densities_;   ///< row per candidate, a density per slot

@@ -19,6 +19,8 @@ class LightSet {
   std::vector<AreaEmitter> area;
   std::vector<Environment> environments;
   std::vector<DeltaEmitter> delta;
+  /// Shafts may answer for lines and shadow rays (LightSight). Tests turn it off: the images must not differ.
+  bool shafts = true;
 
   /// How the triangles of a mesh map to area emitters.
   struct MeshLights {

@@ -35,9 +35,10 @@ void LineBatch::add_part(Side& side, size_t line, const Interval& range, const V
   side.parts.push_back({line, range});
 }
 
-void LineBatch::trace(const Geometry& geometry, QueryCounters& counters) {
-  for (Side* side : {&above_, &below_})
-    if (!side->queries.empty()) geometry.visible(side->queries, side->visible, counters);
+void LineBatch::trace(const Geometry& geometry, const Shaft* shaft, QueryCounters& counters) {
+  if (shaft != nullptr) geometry.visible(*shaft, above_.queries, above_.visible, counters);
+  else geometry.visible(above_.queries, above_.visible, counters);
+  if (!below_.queries.empty()) geometry.visible(below_.queries, below_.visible, counters);
   size_t next_above = 0, next_below = 0;
   for (size_t line = 0; line < count_; ++line) {
     lines_[line].first = intervals_.size();

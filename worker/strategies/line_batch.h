@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "worker/geometry/geometry.h"
+#include "worker/geometry/shaft.h"
 #include "worker/lights/emitter.h"
 #include "worker/lights/line.h"
 #include "worker/strategies/shading_point.h"
@@ -16,8 +16,9 @@ class LineBatch {
   void clear();
   /// Puts a line into the batch and returns its handle. A line with scale 0 is allowed: nothing visible.
   size_t add(const LightLine& line, const ShadingPoint& point, const AreaEmitter& emitter);
-  /// Asks for the visible part of everything added.
-  void trace(const Geometry& geometry, QueryCounters& counters);
+  /// Asks for the visible part of everything added; `shaft`, if there is one, answers for what starts above
+  /// the surface.
+  void trace(const Geometry& geometry, const Shaft* shaft, QueryCounters& counters);
 
   const LightLine& line(size_t handle) const { return lines_[handle].line; }
   /// Visible intervals of s in [0,1], ascending.

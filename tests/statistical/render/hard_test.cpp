@@ -8,6 +8,8 @@
 // enter the estimate all the same.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/statistical/render/agreement.h"
 
 namespace penumbra {
@@ -87,6 +89,43 @@ TEST(HardScenes, TenThousandSlats) {
                          {"bsdf:4", "area:4", "sa:4", "line-area@0:1", "line-area@90:1", "line-sa@u:1",
                           "line-sa@v:1", "bsdf:1+line-sa@v:1"},
                          how);
+}
+
+/// A plate of reflectance 1/2 in a room whose walls all shine with radiance 1 shines with 1/2, whatever the
+/// strategy: samples, densities and visibility end to end, against a number that no strategy gave.
+TEST(HardScenes, FurnaceOfSixLights) {
+  std::string text = R"(LookAt 0.1 0.6 0.2  -0.1 -0.7 0  0 0 1
+Camera "perspective" "float fov" 35
+WorldBegin
+Material "matte" "rgb Kd" [ 0.5 0.5 0.5 ]
+Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ] "point P" [ -0.9 -0.705 -0.9  -0.9 -0.795 0.9  0.9 -0.795 0.9  0.9 -0.705 -0.9 ]
+AreaLightSource "diffuse" "rgb L" [ 1 1 1 ]
+Material "matte" "rgb Kd" [ 0 0 0 ]
+)";
+  // Corner and edges of each wall of [-1,1]³; u × v points inwards.
+  for (const char* wall : {"[ -1 -1 -1 ] \"vector u\" [ 2 0 0 ] \"vector v\" [ 0 2 0 ]",
+                           "[ -1 -1 1 ] \"vector u\" [ 0 2 0 ] \"vector v\" [ 2 0 0 ]",
+                           "[ -1 -1 -1 ] \"vector u\" [ 0 2 0 ] \"vector v\" [ 0 0 2 ]",
+                           "[ 1 -1 -1 ] \"vector u\" [ 0 0 2 ] \"vector v\" [ 0 2 0 ]",
+                           "[ -1 -1 -1 ] \"vector u\" [ 0 0 2 ] \"vector v\" [ 2 0 0 ]",
+                           "[ -1 1 -1 ] \"vector u\" [ 2 0 0 ] \"vector v\" [ 0 0 2 ]"})
+    text += std::string("Shape \"quad\" \"point o\" ") + wall + "\n";
+  const ScenePtr scene = test::load_text(text);
+  ASSERT_TRUE(scene);
+  const JobSpec spec = test::job(32, 32, kEveryStrategy, 16);
+  const test::Rendered rendered = test::render(*scene, spec);
+  for (size_t m = 0; m < spec.mixes.size(); ++m) {
+    const FilmImage& image = rendered.images[m];
+    double mean = 0, variance = 0;
+    for (size_t i = 0; i < image.rgb.size(); i += 3) {
+      mean += image.rgb[i];
+      variance += image.variance[i];
+    }
+    const double n = static_cast<double>(image.rgb.size()) / 3, error = std::sqrt(variance) / n;
+    EXPECT_LT(std::abs(mean / n - 0.5), 4.5 * error + 1e-6) << kEveryStrategy[m];
+    EXPECT_LT(error, 0.02) << kEveryStrategy[m];
+    EXPECT_EQ(rendered.costs[m].non_finite, 0u) << kEveryStrategy[m];
+  }
 }
 
 TEST(HardScenes, AClosedBoxIsBlack) {

@@ -47,7 +47,7 @@ Process::Process(const std::vector<std::string>& command, const std::string& std
   const int log = open(stderr_path.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
   dup2(log, STDERR_FILENO);
   dup2(log, STDOUT_FILENO);
-  execv(arguments[0], arguments.data());
+  execvp(arguments[0], arguments.data());
   _exit(127);
 }
 
@@ -98,14 +98,16 @@ std::string Cluster::server_log() const {
 void Cluster::start_server() {
   const std::string file = path("address");
   std::filesystem::remove(file);
-  server_ =
-      std::make_unique<Process>(std::vector<std::string>{PENUMBRA_SERVER, "--listen", address_, "--store",
-                                                         path("store"), "--address-file", file},
-                                path("server.log"));
+  std::vector<std::string> command = server_prefix;
+  for (const std::string& word : {std::string(PENUMBRA_SERVER), std::string("--listen"), address_,
+                                  std::string("--store"), path("store"), std::string("--address-file"), file})
+    command.push_back(word);
+  command.insert(command.end(), server_flags.begin(), server_flags.end());
+  server_ = std::make_unique<Process>(command, path("server.log"));
   for (const double end = steady_seconds() + 30; !std::filesystem::exists(file); nap())
     ASSERT_LT(steady_seconds(), end) << server_log();
   std::stringstream(read_text(file)) >> address_;
-  const auto channel = *open_channel(address_, {});
+  const auto channel = *open_channel(address_, credentials);
   render_ = v1::Render::NewStub(channel);
   // The address is written before the first poll, and a channel to a killed predecessor at this address may
   // not have noticed yet: only an answered call says that calls are answered.
@@ -123,10 +125,13 @@ void Cluster::start_server() {
 }
 
 Process& Cluster::start_worker(int threads, const std::string& cache) {
-  workers_.push_back(std::make_unique<Process>(
-      std::vector<std::string>{PENUMBRA_FAKE_WORKER, "--server", address_, "--threads",
-                               std::to_string(threads), "--cache", path(cache)},
-      path("worker.log")));
+  std::vector<std::string> command = worker_prefix;
+  for (const std::string& word :
+       {std::string(PENUMBRA_FAKE_WORKER), std::string("--server"), address_, std::string("--threads"),
+        std::to_string(threads), std::string("--cache"), path(cache)})
+    command.push_back(word);
+  command.insert(command.end(), worker_flags.begin(), worker_flags.end());
+  workers_.push_back(std::make_unique<Process>(command, path("worker.log")));
   return *workers_.back();
 }
 
@@ -167,16 +172,24 @@ JobSpec Cluster::spec(const Digest& bundle) const {
   return spec;
 }
 
-JobId Cluster::submit(const JobSpec& spec) {
+grpc::Status Cluster::try_submit(const JobSpec& spec, const JobTerms& terms, JobId& job) {
   v1::SubmitRequest request;
   *request.mutable_spec() = to_proto(spec);
+  *request.mutable_terms() = to_proto(terms);
   static int counter = 0;
   request.set_request_id("r" + std::to_string(counter++));
   grpc::ClientContext context;
   v1::SubmitResponse response;
   const grpc::Status status = render_->Submit(&context, request, &response);
+  job = response.job();
+  return status;
+}
+
+JobId Cluster::submit(const JobSpec& spec, const JobTerms& terms) {
+  JobId job;
+  const grpc::Status status = try_submit(spec, terms, job);
   EXPECT_TRUE(status.ok()) << status.error_message();
-  return response.job();
+  return job;
 }
 
 JobStatus Cluster::status(const JobId& job) {
@@ -210,13 +223,12 @@ JobStatus Cluster::wait_end(const JobId& job, double seconds) {
   return wait_until(job, seconds, [](const JobStatus& status) { return is_final(status.state); });
 }
 
-RunSummary Cluster::fetch(const JobId& job, Picture& picture) {
+grpc::Status Cluster::try_fetch(const JobId& job, Picture& picture, RunSummary& summary) {
   v1::FetchFramesRequest request;
   request.set_job(job);
   grpc::ClientContext context;
   const auto reader = render_->FetchFrames(&context, request);
   v1::FetchFramesResponse message;
-  RunSummary summary;
   bool ended = false;
   while (reader->Read(&message)) {
     if (message.has_summary()) {
@@ -237,9 +249,28 @@ RunSummary Cluster::fetch(const JobId& job, Picture& picture) {
       ended = message.has_end();
     }
   }
-  EXPECT_TRUE(reader->Finish().ok());
-  EXPECT_TRUE(ended);
+  const grpc::Status status = reader->Finish();
+  EXPECT_EQ(status.ok(), ended);
+  return status;
+}
+
+RunSummary Cluster::fetch(const JobId& job, Picture& picture) {
+  RunSummary summary;
+  const grpc::Status status = try_fetch(job, picture, summary);
+  EXPECT_TRUE(status.ok()) << status.error_message();
   return summary;
+}
+
+std::string Cluster::blob_path(const Digest& digest) const {
+  return path("store/blobs/" + digest.substr(0, 2) + "/" + digest);
+}
+
+std::vector<std::string> Cluster::result_files() const {
+  std::vector<std::string> out;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(path("store/blobs")))
+    if (entry.is_regular_file() && read_text(entry.path()).substr(0, 4) == "PNTR")
+      out.push_back(entry.path());
+  return out;
 }
 
 }  // namespace penumbra

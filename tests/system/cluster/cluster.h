@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "proto/blobs.grpc.pb.h"
+#include "proto/channel.h"
 #include "proto/render.grpc.pb.h"
 #include "proto/run.h"
 #include "proto/worker.grpc.pb.h"
@@ -43,6 +44,11 @@ class Cluster {
   explicit Cluster(const std::string& name);
   ~Cluster();
 
+  // Of servers and workers that are started from now on: what their command begins with (env, unshare), and
+  // further flags.
+  std::vector<std::string> server_prefix, server_flags, worker_prefix, worker_flags;
+  Credentials credentials;  ///< of the calls made by this object
+
   /// Starts a server on a free port (or again on the same) and connects.
   void start_server();
   Process& server() { return *server_; }
@@ -60,12 +66,19 @@ class Cluster {
   /// Uploads a bundle of one file with this text; its digest.
   Digest upload_scene(const std::string& text);
   JobSpec spec(const Digest& bundle) const;
-  JobId submit(const JobSpec& spec);
+  JobId submit(const JobSpec& spec, const JobTerms& terms = {});
+  grpc::Status try_submit(const JobSpec& spec, const JobTerms& terms, JobId& job);
   JobStatus status(const JobId& job);
   /// Until `wanted` says so; fails the test after `seconds`.
   JobStatus wait_until(const JobId& job, double seconds, const std::function<bool(const JobStatus&)>& wanted);
   JobStatus wait_end(const JobId& job, double seconds = 60);
   RunSummary fetch(const JobId& job, Picture& picture);
+  /// As fetch(), for calls that may fail.
+  grpc::Status try_fetch(const JobId& job, Picture& picture, RunSummary& summary);
+  /// Where the server keeps a blob.
+  std::string blob_path(const Digest& digest) const;
+  /// Files of accepted results in the store: all blobs that begin like one.
+  std::vector<std::string> result_files() const;
 
  private:
   std::filesystem::path root_;

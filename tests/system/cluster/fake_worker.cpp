@@ -1,7 +1,9 @@
 // The worker program with a renderer whose pictures are a hash of what a pass depends on, and which takes
 // as long as the scene file says: system tests of the cluster need no scene and no Embree.
 #include <chrono>
+#include <cstdlib>
 #include <fstream>
+#include <string_view>
 #include <thread>
 
 #include "proto/status.h"
@@ -27,6 +29,7 @@ class FakeScene final : public RenderableScene {
                      const std::atomic<bool>& cancel) const override {
     TaskOutcome outcome;
     for (size_t m = 0; m < task.passes.size(); ++m) {
+      endless();
       const int64_t passes = task.kind == TaskKind::kPilot ? 2 : task.passes[m].count();
       for (int64_t pass = 0; pass < passes; ++pass) {
         std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds_));
@@ -37,11 +40,25 @@ class FakeScene final : public RenderableScene {
       outcome.costs.push_back({passes, 0.001 * static_cast<double>(passes), 1, 1, 0, 1});
       if (task.kind == TaskKind::kRun) outcome.pixels.mixes.push_back(pixels(job, task, m));
     }
+    if (task.kind == TaskKind::kPilot)
+      for (size_t k = 0; k < task.chosen.size(); ++k) {
+        MixCost cost{4, 0.001 + 0.0001 * static_cast<double>(k), 1, 1, 0, 1};
+        cost.pixels = 16;
+        cost.work = 1;
+        outcome.costs.push_back(cost);
+      }
     return outcome;
   }
   std::vector<std::string> substitutions(const Mix&) const override { return {"a substitution"}; }
 
  private:
+  /// PENUMBRA_FAKE=endless: computes for ever and does not hear of being cancelled.
+  static void endless() {
+    const char* mode = std::getenv("PENUMBRA_FAKE");
+    while (mode != nullptr && std::string_view(mode) == "endless")
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+
   static TilePixels pixels(const JobSpec& job, const TileTask& task, size_t m) {
     TilePixels out;
     out.rect = task.tile;

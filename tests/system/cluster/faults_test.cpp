@@ -7,39 +7,11 @@
 #include <thread>
 
 #include "proto/convert.h"
-#include "tests/system/cluster/cluster.h"
+#include "proto/tiles.h"
+#include "tests/system/cluster/calm.h"
 
 namespace penumbra {
 namespace {
-
-std::string test_name() {
-  return testing::UnitTest::GetInstance()->current_test_info()->name();
-}
-
-/// The undisturbed run of the default spec: one worker, one thread.
-const Picture& calm() {
-  static const Picture picture = [] {
-    Cluster cluster("calm");
-    cluster.start_server();
-    cluster.start_worker();
-    const JobId job = cluster.submit(cluster.spec(cluster.upload_scene("0")));
-    EXPECT_EQ(cluster.wait_end(job).state, JobState::kDone);
-    Picture out;
-    cluster.fetch(job, out);
-    return out;
-  }();
-  return picture;
-}
-
-void expect_calm(Cluster& cluster, const JobId& job) {
-  EXPECT_EQ(cluster.wait_end(job).state, JobState::kDone);
-  Picture picture;
-  const RunSummary summary = cluster.fetch(job, picture);
-  ASSERT_EQ(picture.mean.size(), calm().mean.size());
-  EXPECT_EQ(picture.mean[0].size(), 96u * 64 * 3);
-  EXPECT_TRUE(picture == calm()) << "pixels differ";
-  for (const MixSummary& mix : summary.mixes) EXPECT_EQ(mix.passes, 32);
-}
 
 TEST(Faults, AnyNumberOfWorkersAndThreadsMakeTheSamePicture) {
   Cluster cluster(test_name());
@@ -160,6 +132,47 @@ TEST(Faults, APilotTurnsSecondsIntoPasses) {
   EXPECT_NEAR(summary.mixes[0].cpu_seconds, 0.12, 1e-9);
   EXPECT_EQ(summary.mixes[0].substitutions, std::vector<std::string>{"a substitution"});
   EXPECT_EQ(summary.load.warnings, std::vector<std::string>{"a warning"});
+}
+
+TEST(Faults, APlanOfAutoOutlivesTheServerAndReplays) {
+  Cluster cluster(test_name());
+  cluster.start_server();
+  cluster.start_worker(2);
+  JobSpec spec = cluster.spec(cluster.upload_scene("4"));
+  spec.mixes[1] = *parse_mix("auto");
+  spec.budget = CpuSecondsBudget{1};
+  const JobId job = cluster.submit(spec);
+  cluster.wait_until(job, 30,
+                     [](const JobStatus& s) { return s.state == JobState::kRunning && s.tasks_done >= 2; });
+  cluster.server().kill_hard();
+  cluster.start_server();
+  EXPECT_EQ(cluster.wait_end(job).state, JobState::kDone);
+  Picture picture;
+  const RunSummary summary = cluster.fetch(job, picture);
+  ASSERT_EQ(summary.auto_plans.size(), 1u);
+  ASSERT_EQ(summary.auto_plans[0].tiles.size(), tiles_of(spec).size());
+  EXPECT_GT(summary.mixes[1].pilot_cpu_seconds, 0);
+  EXPECT_GT(summary.mixes[1].cpu_seconds, summary.mixes[1].pilot_cpu_seconds)
+      << "the pilot is part of its cost";
+
+  // Each pixel has its tile's passes.
+  const auto tiles = tiles_of(spec);
+  for (size_t t = 0; t < tiles.size(); ++t) {
+    const size_t pixel =
+        static_cast<size_t>(tiles[t].y0 - spec.crop.y0) * static_cast<size_t>(spec.crop.width()) +
+        static_cast<size_t>(tiles[t].x0 - spec.crop.x0);
+    EXPECT_EQ(static_cast<int64_t>(picture.samples[1][pixel]), summary.auto_plans[0].tiles[t].passes);
+  }
+
+  spec.plan = summary.status.plan;
+  spec.auto_plans = summary.auto_plans;
+  const JobId again = cluster.submit(spec);
+  EXPECT_EQ(cluster.wait_end(again).state, JobState::kDone);
+  Picture replayed;
+  const RunSummary second = cluster.fetch(again, replayed);
+  EXPECT_TRUE(replayed == picture) << "pixels differ";
+  EXPECT_EQ(second.auto_plans, summary.auto_plans);
+  EXPECT_EQ(second.mixes[1].pilot_cpu_seconds, 0) << "a stored plan needs no pilot";
 }
 
 }  // namespace

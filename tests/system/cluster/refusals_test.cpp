@@ -5,14 +5,10 @@
 #include <fstream>
 
 #include "proto/convert.h"
-#include "tests/system/cluster/cluster.h"
+#include "tests/system/cluster/calm.h"
 
 namespace penumbra {
 namespace {
-
-std::string test_name() {
-  return testing::UnitTest::GetInstance()->current_test_info()->name();
-}
 
 grpc::Status submit(Cluster& cluster, const JobSpec& spec) {
   v1::SubmitRequest request;

@@ -29,7 +29,7 @@ WorkerState told(TaskBoard& board) {
 }
 
 TEST(TaskBoard, TasksGoFromLeaseToAcknowledgement) {
-  TaskBoard board(4);
+  TaskBoard board(2);
   const LeaseId id{"j", 1, 1};
   WorkerState state = told(board);
   EXPECT_EQ(state.wanted, 4u);
@@ -54,7 +54,7 @@ TEST(TaskBoard, TasksGoFromLeaseToAcknowledgement) {
 }
 
 TEST(TaskBoard, WhatIsNoLongerDesiredIsCancelled) {
-  TaskBoard board(4);
+  TaskBoard board(2);
   const LeaseId begun{"j", 1, 1}, waiting{"j", 2, 1};
   board.apply(leases({begun, waiting}), told(board));
   const auto assignment = board.take();
@@ -62,12 +62,14 @@ TEST(TaskBoard, WhatIsNoLongerDesiredIsCancelled) {
   board.apply(DesiredState{}, told(board));
   EXPECT_TRUE(assignment->cancel);
   EXPECT_TRUE(told(board).held.empty());
+  EXPECT_EQ(told(board).wanted, 2u) << "a thread that does not notice takes no leases";
   board.drop(*assignment);
+  EXPECT_EQ(told(board).wanted, 4u);
   EXPECT_TRUE(board.empty());
 }
 
 TEST(TaskBoard, AnAnswerToAnOlderStateDropsNothingNewer) {
-  TaskBoard board(4);
+  TaskBoard board(2);
   const WorkerState before = told(board);
   const LeaseId id{"j", 1, 1};
   board.apply(leases({id}), before);
@@ -76,7 +78,7 @@ TEST(TaskBoard, AnAnswerToAnOlderStateDropsNothingNewer) {
 }
 
 TEST(TaskBoard, DrainingHandsBackAndTakesNothingNew) {
-  TaskBoard board(4);
+  TaskBoard board(2);
   const LeaseId begun{"j", 1, 1}, waiting{"j", 2, 1}, late{"j", 3, 1};
   board.apply(leases({begun, waiting}), told(board));
   const auto assignment = board.take();

@@ -43,7 +43,8 @@ TEST(MakeJob, DefaultsAreTheScenes) {
   EXPECT_EQ(job->sampler, SamplerKind::kStratified);
   EXPECT_EQ(job->seed, 0u);
   ASSERT_EQ(job->mixes.size(), 1u);
-  EXPECT_EQ(label(job->mixes[0]), "bsdf:1+sa:1/balance");
+  EXPECT_EQ(label(job->mixes[0]), "auto");
+  EXPECT_EQ(job->tile, 32);
   EXPECT_TRUE(job->scene.starts_with('/'));
 }
 
@@ -54,6 +55,7 @@ TEST(MakeJob, TheScenesMixComesBeforeTheDefault) {
   JobOptions options = plain();
   options.mixes = {"sa:4"};
   EXPECT_EQ(label(make_job(options, scene)->mixes[0]), "sa:4/balance");
+  EXPECT_EQ(make_job(options, scene)->tile, 64);
 }
 
 TEST(MakeJob, OptionsOverride) {
@@ -113,7 +115,8 @@ TEST(MakeJob, MixesAreChecked) {
   EXPECT_THAT(with("bsdv:1"), HasSubstr("bsdv"));
   EXPECT_THAT(with("bsdf:-1"), StartsWith("--mix: "));
   EXPECT_THAT(with("bsdf:0"), StartsWith("--mix: "));
-  EXPECT_THAT(with("auto"), HasSubstr("later version"));
+  EXPECT_THAT(with("auto:2"), StartsWith("--mix: "));
+  EXPECT_THAT(with("auto+sa"), StartsWith("--mix: "));
   EXPECT_THAT(with("bsdf:1/smooth=0.1"), StartsWith("--mix: "));
 }
 

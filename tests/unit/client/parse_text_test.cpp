@@ -68,6 +68,19 @@ TEST(Numbers, AreWholeAndInRange) {
     expect_fault(parse_positive("--flag", text), text);
 }
 
+TEST(Percentages, HaveTheirSign) {
+  EXPECT_DOUBLE_EQ(*parse_percent("--flag", "5%"), 0.05);
+  EXPECT_DOUBLE_EQ(*parse_percent("--flag", "0.3%"), 0.003);
+  for (const char* text : {"5", "%", "", "-5%", "0%", "nan%", "5 %", "5%%"})
+    expect_fault(parse_percent("--flag", text), text);
+}
+
+TEST(Pixels, AreTwoWholeNumbers) {
+  EXPECT_EQ(parse_pixel("--flag", "128,0")->x, 128);
+  for (const char* text : {"128", "1,2,3", "-1,2", "1,-2", "a,b", ",", ""})
+    expect_fault(parse_pixel("--flag", text), text);
+}
+
 TEST(Samplers, RoundTripTheirNames) {
   for (const SamplerKind kind : {SamplerKind::kIndependent, SamplerKind::kStratified, SamplerKind::kSobol})
     EXPECT_EQ(*parse_sampler("--flag", name_of(kind)), kind);

@@ -1,10 +1,9 @@
 #include "client/report.h"
 
-#include <unistd.h>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <half.h>
+#include <unistd.h>
 #include <zlib.h>
 
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include <regex>
 
 #include "client/report_data.h"
+#include "client/report_image.h"
 #include "film/atomic_file.h"
 #include "film/exr.h"
 #include "proto/status.h"
@@ -79,6 +79,51 @@ TEST(ImageJson, HoldsEveryPixelAsHalf) {
                                           static_cast<uint8_t>(bytes[(2 * c + 1) * 15 + p]) << 8));
       EXPECT_EQ(static_cast<float>(value), image.rgb[3 * p + c]);
     }
+}
+
+/// The values of one plane.
+std::vector<double> plane(const Json& json, size_t index, size_t count) {
+  const std::string text = unbase64(json["half"].get<std::string>());
+  std::string bytes((2 * index + 2) * count + 6 * count, '\0');
+  uLongf size = bytes.size();
+  EXPECT_EQ(uncompress(reinterpret_cast<Bytef*>(bytes.data()), &size,
+                       reinterpret_cast<const Bytef*>(text.data()), text.size()),
+            Z_OK);
+  std::vector<double> values;
+  for (size_t p = 0; p < count; ++p) {
+    Imath::half value;
+    value.setBits(static_cast<uint16_t>(static_cast<uint8_t>(bytes[2 * index * count + p]) |
+                                        static_cast<uint8_t>(bytes[(2 * index + 1) * count + p]) << 8));
+    values.push_back(json["unit"].get<double>() * static_cast<double>(static_cast<float>(value)));
+  }
+  return values;
+}
+
+TEST(ImageJson, ValuesBeyondHalfHaveAUnit) {
+  FilmImage image = gradient(4, 2);
+  EXPECT_EQ(image_json(image)["unit"], 1.0);
+  image.rgb[3] = 1e6f;
+  const Json json = image_json(image);
+  EXPECT_EQ(json["unit"], 16.0);
+  const std::vector<double> red = plane(json, 0, 8);
+  EXPECT_NEAR(red[1] / 1e6, 1, 1e-3);
+  EXPECT_NEAR(red[2], 6, 1e-2);
+}
+
+TEST(ImageJson, LayersAreThereWhereTheImageHasThem) {
+  FilmImage image = gradient(4, 2);
+  EXPECT_TRUE(image_json(image)["layers"].empty());
+  image.samples.assign(8, 21);
+  image.cost = {1, 10, 100, 1000, 10000, 100000, 7, 8};
+  image.rgb.assign(24, 2);
+  image.variance.assign(24, 0.25f);
+  const Json layers = image_json(image)["layers"];
+  EXPECT_EQ(plane(layers["samples"], 0, 8), std::vector<double>(8, 21));
+  const std::vector<double> cost = plane(layers["cost"], 0, 8), noise = plane(layers["noise"], 0, 8);
+  for (size_t p = 0; p < 8; ++p) {
+    EXPECT_NEAR(cost[p] / image.cost[p], 1, 1.0 / 256) << "seven stored bits";
+    EXPECT_NEAR(noise[p] / (0.25 / 4.01), 1, 1.0 / 256);
+  }
 }
 
 TEST(ImageJson, LargeImagesAreAveraged) {

@@ -37,7 +37,15 @@ TEST(RunJson, HasTheInterfacesKeys) {
   EXPECT_EQ(mix["image"], "bsdf-1+line-sa-v-3_balance.exr");
   EXPECT_EQ(mix["budget_ratio"], 0.95);
   EXPECT_EQ(mix["regions"]["left"]["relmse_ci"], Json::array({0.4, 0.6}));
-  EXPECT_EQ(mix["timeline"][0], (Json{{"cpu_seconds", 2.5}, {"passes", 16}, {"relmse", 2.0}}));
+  const Json& first = mix["timeline"][0];
+  EXPECT_EQ(first["cpu_seconds"], 2.5);
+  EXPECT_EQ(first["passes"], 16);
+  EXPECT_EQ(first["relmse"], 2.0);
+  EXPECT_EQ(first["relmse_ci"], Json::array({1.5, 2.5}));
+  EXPECT_EQ(first["estimated_relmse"], 1.75);
+  EXPECT_EQ(mix["estimated_relmse"], 0.45);
+  EXPECT_EQ(mix["timeline"][1]["estimated_relmse"], 0.45) << "the last point is the final image";
+  EXPECT_EQ(mix["timeline"][1]["estimated_relmse_ci"], Json::array({0.35, 0.55}));
 }
 
 TEST(RunJson, WhatDoesNotApplyIsNull) {
@@ -48,7 +56,8 @@ TEST(RunJson, WhatDoesNotApplyIsNull) {
   const Json& mix = json["mixes"][0];
   for (const char* key : {"budget_ratio", "ray_seconds", "relmse", "relmse_ci", "mse", "reference_floor"})
     EXPECT_TRUE(mix[key].is_null()) << key;
-  EXPECT_TRUE(mix["timeline"][1]["relmse"].is_null());
+  for (const char* key : {"relmse", "relmse_ci", "estimated_relmse", "estimated_relmse_ci"})
+    EXPECT_TRUE(mix["timeline"][1][key].is_null()) << key;
   EXPECT_EQ(json["budget"], (Json{{"spp", 64}}));
 }
 
@@ -59,6 +68,44 @@ TEST(RunJson, ReplaysTheSameJobWithItsPlan) {
   JobSpec expected = run.summary.spec;
   expected.plan = {64, 64};
   EXPECT_EQ(*spec, expected);
+}
+
+TEST(RunJson, PlansOfAutoAreToldAndReplayed) {
+  RunRecord run = sample_run();
+  JobSpec& spec = run.summary.spec;
+  spec.mixes[1] = *parse_mix("auto");
+  spec.tile = 16;
+  run.summary.mixes[1].mix = spec.mixes[1];
+  run.summary.auto_plans = {{1, {*parse_mix("sa:4"), *parse_mix("bsdf:2+sa:2")}, {{1, 20}, {0, 108}}}};
+  const Json json = Json::parse(json_text(run_json(run)));
+  const Json& plan = json["auto_plans"][0];
+  EXPECT_EQ(plan["mix"], 1);
+  EXPECT_EQ(plan["candidates"], (Json{"sa:4/balance", "bsdf:2+sa:2/balance"}));
+  EXPECT_EQ(
+      plan["tiles"][0],
+      (Json{{"rect", {0, 0, 16, 16}}, {"candidate", 1}, {"mix", "bsdf:2+sa:2/balance"}, {"passes", 20}}));
+  const auto again = replay_spec(json);
+  ASSERT_TRUE(again.ok()) << message_of(again.status());
+  EXPECT_EQ(again->auto_plans, run.summary.auto_plans);
+  // A replay's own run.json replays too.
+  const auto third = job_from_json(to_json(*again));
+  ASSERT_TRUE(third.ok()) << message_of(third.status());
+  EXPECT_EQ(*third, *again);
+
+  const auto fault = [&](auto break_it) {
+    Json broken = json;
+    break_it(broken["auto_plans"]);
+    const auto spec_of_it = replay_spec(broken);
+    EXPECT_EQ(spec_of_it.status().code(), absl::StatusCode::kInvalidArgument);
+    return message_of(spec_of_it.status());
+  };
+  EXPECT_THAT(fault([](Json& plans) { plans = Json::array(); }), HasSubstr("before `auto` was planned"));
+  EXPECT_THAT(fault([](Json& plans) { plans[0]["tiles"].erase(1); }), HasSubstr("1 tiles"));
+  EXPECT_THAT(fault([](Json& plans) { plans[0]["tiles"][0]["candidate"] = 2; }),
+              HasSubstr("candidate 2 of 2"));
+  EXPECT_THAT(fault([](Json& plans) { plans[0]["tiles"][0]["passes"] = 0; }), HasSubstr("0 passes"));
+  EXPECT_THAT(fault([](Json& plans) { plans[0]["mix"] = 0; }), HasSubstr("auto_plans"));
+  EXPECT_THAT(fault([](Json& plans) { plans[0].erase("candidates"); }), HasSubstr("candidates"));
 }
 
 TEST(RunJson, WhatCannotBeReplayedIsSaid) {

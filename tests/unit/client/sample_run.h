@@ -48,7 +48,9 @@ inline RunRecord sample_run() {
     figures.mse = 0.1;
     record.error = figures;
     record.regions = {{"left", figures}};
-    record.checkpoint_relmse = {2.0, 0.5};
+    record.own_error = OwnError{0.45, ConfidenceInterval{0.35, 0.55}};
+    record.checkpoints = {{2.0, ConfidenceInterval{1.5, 2.5}, 1.75, {}},
+                          {0.5, record.error->relmse_ci, {}, {}}};
     run.mixes.push_back(record);
   }
   return run;

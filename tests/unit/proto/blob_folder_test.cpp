@@ -21,11 +21,7 @@ class BlobFolderTest : public testing::Test {
     folder_ = std::make_unique<BlobFolder>(*std::move(folder));
   }
   void TearDown() override { fs::remove_all(root_); }
-  static Digest digest_of(std::string_view bytes) {
-    Sha256 hash;
-    hash.add(bytes);
-    return hash.hex();
-  }
+  static Digest digest_of(std::string_view bytes) { return sha256(bytes); }
 
   fs::path root_;
   std::unique_ptr<BlobFolder> folder_;

@@ -51,11 +51,49 @@ TEST(Convert, JobSpecsComeBack) {
   spec.budget = TargetErrorBudget{1e-3};
   spec.sampler = SamplerKind::kIndependent;
   expect_round_trip(spec);
+  spec.probe = Probe{};
+  expect_round_trip(spec);
+  spec.probe = Probe{Probe::Kind::kIntegrand, 256, 128, 9, 7, 2, {0, 1, 0}};
+  expect_round_trip(spec);
+}
+
+TEST(Convert, PlansOfAutoComeBack) {
+  JobSpec spec = full_spec();
+  spec.mixes.push_back(*parse_mix("auto"));
+  spec.plan = {7, 8, 9, 10};
+  spec.auto_plans = {{3, {*parse_mix("sa:4"), *parse_mix("bsdf:1+sa:1")}, {{1, 5}, {0, 15}}}};
+  expect_round_trip(spec);
+  const std::vector<std::pair<std::string, std::function<void(v1::AutoPlan&)>>> faults = {
+      {"auto_plans", [](v1::AutoPlan& p) { p.set_mix(2); }},
+      {"candidates", [](v1::AutoPlan& p) { p.clear_candidates(); }},
+      {"candidates", [](v1::AutoPlan& p) { p.set_candidates(0, "auto"); }},
+      {"candidate", [](v1::AutoPlan& p) { p.mutable_tiles(0)->set_candidate(2); }},
+      {"passes", [](v1::AutoPlan& p) { p.mutable_tiles(1)->set_passes(0); }},
+  };
+  for (const auto& [field, break_it] : faults) {
+    v1::JobSpec message = to_proto(spec);
+    break_it(*message.mutable_auto_plans(0));
+    const auto read = from_proto(message);
+    ASSERT_FALSE(read.ok()) << field;
+    EXPECT_NE(message_of(read.status()).find(field), std::string::npos) << read.status();
+  }
+  v1::JobSpec message = to_proto(spec);
+  message.clear_auto_plans();
+  EXPECT_FALSE(from_proto(message).ok()) << "passes without the plan of `auto`";
 }
 
 TEST(Convert, TasksCostsAndReportsComeBack) {
   expect_round_trip(TileTask{3, TaskKind::kPilot, {0, 0, 64, 32}, {{0, 8}, {2, 2}}, 4, 99, 0.5});
-  expect_round_trip(MixCost{8, 0.25, 1000, 20, 1, 3.5});
+  expect_round_trip(TileTask{3,
+                             TaskKind::kPilot,
+                             {0, 0, 64, 32},
+                             {{0, 0}},
+                             4,
+                             99,
+                             0.5,
+                             {{0, *parse_mix("sa:4"), 2}, {0, *parse_mix("bsdf:1+line-sa@v:1/free"), 1}},
+                             9});
+  expect_round_trip(MixCost{8, 0.25, 1000, 20, 1, 3.5, 64, 7.25, 1e9, 0.125, {7, 0.125}});
   expect_round_trip(LoadReport{0.1, 0.2, {{"lens", "a.pbrt:3:1: aperture"}}, {"no texture"}});
   expect_round_trip(WorkerInfo{"uuid", "host", "avx2", 4});
 }
@@ -69,9 +107,11 @@ TEST(Convert, SummariesComeBack) {
   summary.status.message = "a.pbrt:1:1: no";
   summary.status.plan = {7, 8, 9};
   summary.status.fraction = 0.5;
+  summary.status.faults = {1, 2, 3, 4, 5, 6, 7};
+  summary.status.terms = {"ada", -7, {"shot=12"}, {"j0"}};
   for (const Mix& mix : summary.spec.mixes)
-    summary.mixes.push_back({mix, 7, 6, 1.5, 10, 20, 1, 0.1, {"sa for line-sa@v"}, {{1, 0.2}, {6, 1.5}}});
-  summary.tiles = {{{0, 0, 8, 8}, 2, 6, 0.5, "uuid"}};
+    summary.mixes.push_back({mix, 7, 6, 1.5, 10, 20, 1, 0.1, {"sa for line-sa@v"}, {{1, 0.2}, {6, 1.5}}, {7, 0.125}});
+  summary.tiles = {{{0, 0, 8, 8}, 2, 6, 0.5, "uuid", {3, 0.5}}};
   summary.workers = {{"uuid", "host", "avx512", 2}};
   summary.worker_cpu_seconds = 3;
   expect_round_trip(summary);
@@ -88,6 +128,7 @@ TEST(Convert, BothHalvesOfASyncComeBack) {
   state.completed.push_back({pilot, "", {}});
   state.failed.push_back({bad, TaskFailure::kBadInput, "why"});
   state.failed.push_back({returned, TaskFailure::kReturned, ""});
+  state.failed.push_back({{"j1", 8, 1}, TaskFailure::kLostInput, "gone"});
   state.loaded = {{"j1", {0.1, 0.2, {}, {"w"}}, {{0, "sa"}}}};
   state.wanted = 8;
   state.known_jobs = {"j1"};
@@ -108,6 +149,14 @@ TEST(Convert, BothHalvesOfASyncComeBack) {
 
 TEST(Convert, ValuesOutOfRangeAreRefusedByName) {
   const std::vector<std::pair<std::string, std::function<void(v1::JobSpec&)>>> faults = {
+      {"probe.kind", [](v1::JobSpec& s) { s.mutable_probe(); }},
+      {"probe.x",
+       [](v1::JobSpec& s) {
+         s.mutable_probe()->set_kind(v1::Probe::KIND_INTEGRAND);
+         s.mutable_probe()->set_camera_width(4);
+         s.mutable_probe()->set_camera_height(4);
+         s.mutable_probe()->set_x(4);
+       }},
       {"width", [](v1::JobSpec& s) { s.set_width(0); }},
       {"height", [](v1::JobSpec& s) { s.set_height(65537); }},
       {"crop", [](v1::JobSpec& s) { s.mutable_crop()->set_x1(641); }},

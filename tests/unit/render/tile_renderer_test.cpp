@@ -3,6 +3,7 @@
 #include <atomic>
 
 #include "tests/support/render.h"
+#include "worker/render/calibration.h"
 #include "worker/render/renderer.h"
 
 namespace penumbra {
@@ -70,6 +71,116 @@ TEST(TileRenderer, APilotReportsCostsAndNoPixels) {
     EXPECT_GT(cost.cpu_seconds, 0);
     EXPECT_GT(cost.rays, 0u);
   }
+}
+
+TEST(TileRenderer, AProbeLooksAtPixelCentres) {
+  // A light without extent: nothing but the camera samples varies, at the sphere's outline and over it.
+  const ScenePtr scene = test::load_text(R"(LookAt 0 3 6  0 0.5 0  0 1 0
+Camera "perspective" "float fov" 40
+WorldBegin
+LightSource "distant" "point from" [ 1 2 3 ] "point to" [ 0 0 0 ]
+Shape "sphere" "float radius" 0.7
+)");
+  ASSERT_TRUE(scene);
+  JobSpec spec = test::job(16, 12, {"sa:1", "sa:1"}, 64);
+  const std::atomic<bool> cancel = false;
+  const auto spread = [&] {
+    const TaskOutcome outcome = render_tile(*scene, spec, task(spec, {0, 64}, {0, 0}), cancel);
+    double sum = 0;
+    for (const float m2 : outcome.pixels.mixes[0].m2) sum += m2;
+    return sum;
+  };
+  EXPECT_GT(spread(), 1);
+  spec.probe = Probe{};
+  EXPECT_EQ(spread(), 0);
+}
+
+TEST(TileRenderer, TheCalibrationLoopIsTimedInRunsOnly) {
+  const ScenePtr scene = test::load_text(kScene);
+  ASSERT_TRUE(scene);
+  const JobSpec spec = test::job(16, 12, {"sa:1", "bsdf:1"}, 1);
+  const std::atomic<bool> cancel = false;
+  Calibration total;
+  for (const MixCost& cost : render_tile(*scene, spec, task(spec, {0, 8}, {0, 8}), cancel).costs)
+    total += cost.calibration;
+  EXPECT_GE(total.units, 1u);
+  EXPECT_GT(total.seconds, 1e-6);
+  EXPECT_LT(total.seconds / static_cast<double>(total.units), 0.01);
+  TileTask pilot = task(spec, {0, 8}, {0, 8});
+  pilot.kind = TaskKind::kPilot;
+  for (const MixCost& cost : render_tile(*scene, spec, pilot, cancel).costs)
+    EXPECT_EQ(cost.calibration, Calibration{});
+}
+
+TEST(Calibration, AUnitIsAlwaysTheSameWork) {
+  EXPECT_EQ(calibration_unit(), calibration_unit());
+  EXPECT_GT(calibration_unit(), 1);
+}
+
+TEST(TileRenderer, AutoIsWhatItsTaskSays) {
+  const ScenePtr scene = test::load_text(kScene);
+  ASSERT_TRUE(scene);
+  const std::atomic<bool> cancel = false;
+  const JobSpec fixed = test::job(16, 12, {"sa:1", "bsdf:1+line-sa@u:1"}, 8);
+  const JobSpec automatic = test::job(16, 12, {"sa:1", "auto"}, 8);
+  TileTask a = task(fixed, {0, 8}, {0, 8}), b = a;
+  a.group = 4;
+  b.group = 1;
+  b.chosen = {{1, fixed.mixes[1], 4}};
+  const TaskOutcome x = render_tile(*scene, fixed, a, cancel), y = render_tile(*scene, automatic, b, cancel);
+  EXPECT_EQ(x.pixels.mixes[1].mean, y.pixels.mixes[1].mean) << "another mix, or another group than chosen";
+  EXPECT_EQ(y.pixels.mixes[1].groups, 2);
+  EXPECT_EQ(y.costs.size(), 2u);
+}
+
+/// A pilot of `auto` with these candidates on 5 blocks.
+std::vector<MixCost> candidate_costs(const Scene& scene, const std::vector<const char*>& candidates,
+                                     uint64_t shuffle) {
+  const JobSpec spec = test::job(16, 12, {"auto"}, 8);
+  TileTask pilot;
+  pilot.kind = TaskKind::kPilot;
+  pilot.tile = spec.crop;
+  pilot.passes = {{0, 0}};
+  pilot.shuffle = shuffle;
+  pilot.pilot_blocks = 5;
+  for (const char* text : candidates) pilot.chosen.push_back({0, *parse_mix(text), 1});
+  const std::atomic<bool> cancel = false;
+  TaskOutcome outcome = render_tile(scene, spec, pilot, cancel);
+  EXPECT_EQ(outcome.costs.size(), 1 + candidates.size());
+  return {outcome.costs.begin() + 1, outcome.costs.end()};
+}
+
+TEST(TileRenderer, CandidatesAreMeasuredOnTheSamePixels) {
+  const ScenePtr scene = test::load_text(kScene);
+  ASSERT_TRUE(scene);
+  const auto costs = candidate_costs(*scene, {"sa:1", "sa:1", "sa:16", "line-sa@u:1"}, 1);
+  for (const MixCost& cost : costs) {
+    EXPECT_EQ(cost.pixels, 5 * 8);
+    EXPECT_EQ(cost.passes, 4);
+    EXPECT_GT(cost.cpu_seconds, 0);
+    EXPECT_GT(cost.work, 0);
+  }
+  EXPECT_EQ(costs[0].relative_variance, costs[1].relative_variance) << "other random numbers";
+  EXPECT_GT(costs[0].relative_variance, 2 * costs[2].relative_variance);
+  EXPECT_GT(costs[2].work, 2 * costs[0].work);
+  EXPECT_GT(costs[3].line_queries, 0u);
+  // Whatever the order of rendering and the clock: what plans of pass counts are made from is the same.
+  const auto again = candidate_costs(*scene, {"sa:1", "sa:1", "sa:16", "line-sa@u:1"}, 99);
+  for (size_t k = 0; k < costs.size(); ++k) {
+    EXPECT_EQ(costs[k].relative_variance, again[k].relative_variance);
+    EXPECT_EQ(costs[k].work, again[k].work);
+  }
+}
+
+TEST(TileRenderer, LinesAreNoCandidatesWhereNoLightServesThem) {
+  std::string text = kScene;
+  const size_t quad = text.find("Shape \"quad\"");
+  text.replace(quad, text.find('\n', quad) - quad, "Translate 0 3 0 Shape \"sphere\" \"float radius\" 0.3");
+  const ScenePtr scene = test::load_text(text.c_str());
+  ASSERT_TRUE(scene);
+  const auto costs = candidate_costs(*scene, {"bsdf:1+line-sa@v:1", "sa:1"}, 1);
+  EXPECT_EQ(costs[0].pixels, 0);
+  EXPECT_EQ(costs[1].pixels, 5 * 8);
 }
 
 TEST(TileRenderer, CancelLeavesBetweenPasses) {

@@ -51,9 +51,7 @@ class AssemblerTest : public testing::Test {
       result.mixes.push_back(std::move(pixels));
     }
     const std::string bytes = serialize(result);
-    Sha256 hash;
-    hash.add(bytes);
-    const Digest digest = hash.hex();
+    const Digest digest = sha256(bytes);
     ASSERT_TRUE(blobs_->put(digest, bytes).ok());
     job_.results[index] = digest;
   }

@@ -38,11 +38,19 @@ TEST(Planner, TilesCoverTheCropOnce) {
 TEST(Planner, OnlyMeasuredBudgetsNeedAPilot) {
   EXPECT_FALSE(needs_pilot(spec_of(8, 8, {"sa"}, SppBudget{4})));
   EXPECT_TRUE(needs_pilot(spec_of(8, 8, {"sa"}, CpuSecondsBudget{4})));
+  EXPECT_TRUE(needs_pilot(spec_of(8, 8, {"sa", "auto"}, SppBudget{4})));
   EXPECT_TRUE(needs_pilot(spec_of(8, 8, {"sa"}, TargetErrorBudget{0.1})));
   JobSpec stored = spec_of(8, 8, {"sa"}, CpuSecondsBudget{4});
   stored.plan = {5};
   EXPECT_FALSE(needs_pilot(stored));
-  EXPECT_EQ(*planned_passes(stored, {}), std::vector<int64_t>{5});
+  EXPECT_EQ(planned_passes(stored, {})->passes, std::vector<int64_t>{5});
+}
+
+TEST(Planner, PassesOfAProbeAreRepetitions) {
+  JobSpec spec = spec_of(8, 8, {"sa", "bsdf"}, SppBudget{4096});
+  EXPECT_GT(make_plan(spec, {4096, 4096}).group, 1);
+  spec.probe = Probe{};
+  EXPECT_EQ(make_plan(spec, {4096, 256}).group, 1);
 }
 
 TEST(Planner, PilotCostsAShareOfTheBudget) {
@@ -63,7 +71,7 @@ TEST(Planner, SecondsBecomePasses) {
   // Two tiles: 0.1 + 0.3 s per pass of mix 0, 2 + 30 s of mix 1.
   const std::vector<std::vector<MixCost>> pilot = {{{2, 0.2, 0, 0, 0, 0}, {1, 2, 0, 0, 0, 0}},
                                                    {{1, 0.3, 0, 0, 0, 0}, {1, 30, 0, 0, 0, 0}}};
-  EXPECT_EQ(*planned_passes(spec, pilot), (std::vector<int64_t>{25, 1}));
+  EXPECT_EQ(planned_passes(spec, pilot)->passes, (std::vector<int64_t>{25, 1}));
   EXPECT_FALSE(planned_passes(spec, {{{0, 0, 0, 0, 0, 0}, {1, 1, 0, 0, 0, 0}}, pilot[1]}).ok());
 }
 
@@ -73,7 +81,7 @@ TEST(Planner, ErrorBecomesPasses) {
   const double sum = 0.5 * 3 * 128 * 64;
   const std::vector<std::vector<MixCost>> pilot = {{{8, 1, 0, 0, 0, 0.25 * sum}},
                                                    {{8, 1, 0, 0, 0, 0.75 * sum}}};
-  EXPECT_EQ(*planned_passes(spec, pilot), std::vector<int64_t>{50});
+  EXPECT_EQ(planned_passes(spec, pilot)->passes, std::vector<int64_t>{50});
   EXPECT_FALSE(planned_passes(spec, {{{1, 1, 0, 0, 0, 1}}, {{8, 1, 0, 0, 0, 1}}}).ok());
 }
 
@@ -134,7 +142,7 @@ TEST(Planner, LongRunsHaveFinerTimelines) {
     return std::count_if(plan.boundaries.begin(), plan.boundaries.end(),
                          [](const PassBoundary& boundary) { return boundary.checkpoint; });
   };
-  EXPECT_EQ(checkpoints(1), 3);  // 4 groups of 128: shares below 1/4 are less than one
+  EXPECT_EQ(checkpoints(1), 3);    // 4 groups of 128: shares below 1/4 are less than one
   EXPECT_EQ(checkpoints(600), 8);  // every group: they grow no longer than two seconds
 }
 

@@ -330,6 +330,14 @@ StoredState replay(const std::vector<Change>& changes) {
     if (const auto* put = std::get_if<PutLease>(&change)) lease(put->lease) = {put->lease, put->holder};
     if (const auto* drop = std::get_if<DropLease>(&change)) lease(drop->lease).holder = {};
     if (const auto* put = std::get_if<PutResult>(&change)) job(put->lease.job).results.push_back(*put);
+    if (const auto* put = std::get_if<PutBlame>(&change)) job(put->job).blames.push_back({*put, 1});
+    if (const auto* drop = std::get_if<DropJob>(&change))
+      std::erase_if(state.jobs, [&](const StoredJob& known) { return known.header.id == drop->job; });
+    if (const auto* drop = std::get_if<DropResult>(&change)) {
+      std::erase_if(job(drop->lease.job).results,
+                    [&](const PutResult& result) { return result.lease.task == drop->lease.task; });
+      lease(drop->lease).holder = {};
+    }
     if (const auto* put = std::get_if<PutWorker>(&change)) state.workers.push_back(put->worker);
   }
   return state;
@@ -368,6 +376,232 @@ TEST_F(SchedulerTest, ARestartAnywhereGoesOn) {
     EXPECT_EQ(scheduler_.find(job)->header.state, JobState::kDone);
     EXPECT_EQ(scheduler_.find(job)->retries(), 0u);
   }
+}
+
+TEST_F(SchedulerTest, ARestartGivesNobodyTheTasksOfACancelledJob) {
+  const JobId job = submit();
+  WorkerState a = worker("a", "0");
+  sync(a);
+  ASSERT_TRUE(scheduler_.cancel(job, now_).ok());
+  collect();
+  scheduler_ = Scheduler();
+  ASSERT_TRUE(scheduler_.restore(replay(changes_), now_).ok());
+  sync(a);
+  EXPECT_TRUE(a.held.empty());
+  EXPECT_EQ(scheduler_.find(job)->header.state, JobState::kCancelled);
+}
+
+TEST_F(SchedulerTest, ATaskThatNeverEndsIsTakenAway) {
+  const JobId job = submit();
+  WorkerState a = worker("a", "0", 2);
+  sync(a);
+  a.held[1].begun = false;
+  sync(a);
+  const LeaseId endless = a.held[0].lease, waiting = a.held[1].lease;
+  for (int second = 0; second < 1799; ++second) {  // it renews its leases and makes no progress
+    now_.steady += 1;
+    scheduler_.expire(now_);
+    a.held[1].begun = false;
+    ASSERT_TRUE(scheduler_.report(a, {}, now_).ok());
+  }
+  EXPECT_EQ(scheduler_.find(job)->leased(), 2u);
+  now_.steady += 1;
+  scheduler_.expire(now_);
+  EXPECT_EQ(scheduler_.find(job)->leased(), 0u);
+  EXPECT_EQ(scheduler_.find(job)->header.faults.overdue_leases, 2u);
+  EXPECT_TRUE(scheduler_.find(job)->blames.contains(endless.task));
+  EXPECT_FALSE(scheduler_.find(job)->blames.contains(waiting.task)) << "it had not begun";
+}
+
+TEST_F(SchedulerTest, ALostResultIsRenderedAgainAlsoAfterARestart) {
+  const JobId job = submit();
+  WorkerState a = worker("a", "0", 2);
+  run_to_end(a, job);
+  collect();
+  const uint64_t total = scheduler_.find(job)->stage_total();
+  scheduler_.lose_results(job, {{1, Digest(64, 'c')}, {1, Digest(64, 'b')}, {1, Digest(64, 'b')}}, now_);
+  collect();
+  EXPECT_EQ(scheduler_.find(job)->header.state, JobState::kRunning);
+  EXPECT_EQ(scheduler_.find(job)->stage_done(), total - 1);
+  EXPECT_EQ(scheduler_.find(job)->header.faults.corrupt_results, 1u);
+  scheduler_ = Scheduler();
+  ASSERT_TRUE(scheduler_.restore(replay(changes_), now_).ok());
+  EXPECT_EQ(scheduler_.find(job)->stage_done(), total - 1);
+  sync(a);
+  ASSERT_EQ(a.held.size(), 1u);
+  EXPECT_EQ(a.held[0].lease, (LeaseId{job, 1, 2})) << "the epoch goes on";
+  run_to_end(a, job);
+  EXPECT_EQ(scheduler_.find(job)->header.state, JobState::kDone);
+}
+
+TEST_F(SchedulerTest, AMessageThatWasOvertakenCountsNothingTwice) {
+  const JobId job = submit();
+  WorkerState a = worker("a", "0");
+  sync(a);
+  for (const double seconds : {3.0, 1.0, 3.0, 4.0}) {
+    a.process_cpu_seconds = seconds;
+    sync(a);
+  }
+  EXPECT_EQ(scheduler_.find(job)->header.worker_cpu_seconds, 4);
+}
+
+TEST_F(SchedulerTest, AWorkerThatFailsLeavesTheTaskToOthers) {
+  const JobId job = submit();
+  WorkerState bad = worker("a", "0"), good = worker("b", "1");
+  good.wanted = 0;
+  sync(good);
+  for (int i = 0; i < 20; ++i) {
+    now_.steady += 60;  // however long it rests
+    ASSERT_TRUE(scheduler_.report(good, {}, now_).ok());
+    sync(bad);
+    if (bad.held.empty()) continue;
+    bad.failed.push_back({bad.held[0].lease, TaskFailure::kError, "bang"});
+    bad.held.clear();
+    sync(bad);
+  }
+  EXPECT_FALSE(scheduler_.find(job)->final());
+  good.wanted = 2;
+  run_to_end(good, job);
+  EXPECT_EQ(scheduler_.find(job)->header.state, JobState::kDone);
+}
+
+TEST_F(SchedulerTest, AWorkerThatFailsThreeJobsInARowIsSetAside) {
+  WorkerState bad = worker("a", "0"), good = worker("b", "1");
+  good.wanted = 0;
+  for (const std::string id : {"j1", "j2", "j3"}) {
+    scheduler_.submit(id, id, spec_of(SppBudget{4}), now_);
+    now_.steady += 60;
+    sync(good);
+    sync(bad);
+    ASSERT_EQ(bad.held.size(), 1u);
+    bad.failed.push_back({bad.held[0].lease, TaskFailure::kError, "it has no libc"});
+    bad.held.clear();
+    sync(bad);
+    ASSERT_TRUE(scheduler_.cancel(id, now_).ok());
+  }
+  const JobId job = scheduler_.submit("j4", "j4", spec_of(SppBudget{4}), now_);
+  now_.steady += 60;
+  sync(good);
+  sync(bad);
+  EXPECT_TRUE(bad.held.empty());
+  bool told = false;
+  for (const std::string& reason : explain(scheduler_, *scheduler_.find(job), now_))
+    told |=
+        reason.find("set aside") != std::string::npos && reason.find("it has no libc") != std::string::npos;
+  EXPECT_TRUE(told);
+}
+
+TEST_F(SchedulerTest, AWorkerThatFailsAloneIsNotSetAside) {
+  WorkerState only = worker("a", "0");
+  for (const std::string id : {"j1", "j2", "j3", "j4"}) {
+    scheduler_.submit(id, id, spec_of(SppBudget{4}), now_);
+    sync(only);
+    ASSERT_EQ(only.held.size(), 1u) << id;
+    only.failed.push_back({only.held[0].lease, TaskFailure::kError, "bang"});
+    only.held.clear();
+    only.wanted = 0;
+    sync(only);
+    only.wanted = 1;
+    ASSERT_TRUE(scheduler_.cancel(id, now_).ok());
+  }
+}
+
+TEST_F(SchedulerTest, FailuresCountOverRestarts) {
+  const JobId job = submit();
+  for (int restart = 0; restart < 5; ++restart) {
+    ASSERT_FALSE(scheduler_.find(job)->final()) << restart;
+    WorkerState a = worker("a" + std::to_string(restart), "0");
+    sync(a);
+    a.failed.push_back({a.held[0].lease, TaskFailure::kError, "bang"});
+    a.held.clear();
+    a.wanted = 0;
+    sync(a);
+    const StoredState stored = replay(changes_);
+    scheduler_ = Scheduler();
+    ASSERT_TRUE(scheduler_.restore(stored, now_).ok());
+  }
+  EXPECT_EQ(scheduler_.find(job)->header.state, JobState::kFailed);
+}
+
+TEST_F(SchedulerTest, OnlyFinalJobsAreForgotten) {
+  const JobId job = submit();
+  scheduler_.forget(job);
+  ASSERT_NE(scheduler_.find(job), nullptr);
+  ASSERT_TRUE(scheduler_.cancel(job, now_).ok());
+  scheduler_.forget(job);
+  EXPECT_EQ(scheduler_.find(job), nullptr);
+  collect();
+  EXPECT_TRUE(replay(changes_).jobs.empty());
+  EXPECT_EQ(scheduler_.submit("j2", "request", spec_of(SppBudget{4}), now_), "j2")
+      << "its request id is free";
+}
+
+TEST_F(SchedulerTest, UsersShareEvenlyAndPrioritiesOrderAUsersJobs) {
+  const auto add = [&](const std::string& id, const std::string& user, int priority) {
+    scheduler_.submit(id, id, spec_of(SppBudget{4}), now_, {user, priority, {}, {}});
+  };
+  add("a1", "ada", 0);
+  add("a2", "ada", 5);
+  add("a3", "ada", 0);
+  add("b1", "bob", -100);
+  WorkerState w = worker("w", "0", 4);
+  w.worker.cores = 4;
+  sync(w);
+  std::map<JobId, int> held;
+  for (const HeldLease& lease : w.held) ++held[lease.lease.job];
+  EXPECT_EQ(held, (std::map<JobId, int>{{"a2", 2}, {"b1", 2}}));
+  bool told = false;
+  for (const std::string& reason : explain(scheduler_, *scheduler_.find("a1"), now_))
+    told |= reason.find("higher priority") != std::string::npos;
+  EXPECT_TRUE(told);
+}
+
+TEST_F(SchedulerTest, QuotasBoundJobsAndTasks) {
+  SchedulerLimits limits;
+  limits.quotas["ada"] = {2, 1};
+  scheduler_ = Scheduler(limits);
+  scheduler_.submit("a1", "a1", spec_of(SppBudget{4}), now_, {"ada", 0, {}, {}});
+  EXPECT_TRUE(scheduler_.check_quota("ada").ok());
+  scheduler_.submit("a2", "a2", spec_of(SppBudget{4}), now_, {"ada", 0, {}, {}});
+  EXPECT_TRUE(absl::IsResourceExhausted(scheduler_.check_quota("ada")));
+  EXPECT_TRUE(scheduler_.check_quota("bob").ok());
+  WorkerState w = worker("w", "0", 4);
+  sync(w);
+  EXPECT_EQ(w.held.size(), 1u);
+  EXPECT_NE(explain(scheduler_, *scheduler_.find("a1"), now_).at(0).find("quota"), std::string::npos);
+}
+
+TEST_F(SchedulerTest, AJobWaitsForThoseBeforeItAndFailsWithThem) {
+  for (const bool succeeds : {true, false}) {
+    scheduler_ = Scheduler();
+    scheduler_.submit("first", "first", spec_of(SppBudget{4}), now_);
+    scheduler_.submit("second", "second", spec_of(SppBudget{4}), now_, {"", 9, {}, {"first"}});
+    scheduler_.submit("third", "third", spec_of(SppBudget{4}), now_, {"", 9, {}, {"second"}});
+    WorkerState a = worker("a", "0", 1);
+    sync(a);
+    EXPECT_EQ(a.held.at(0).lease.job, "first");
+    EXPECT_NE(explain(scheduler_, *scheduler_.find("second"), now_).at(0).find("waits for job first"),
+              std::string::npos);
+    if (succeeds) {
+      run_to_end(a, "third");
+      EXPECT_EQ(scheduler_.find("third")->header.state, JobState::kDone);
+    } else {
+      ASSERT_TRUE(scheduler_.cancel("first", now_).ok());
+      EXPECT_EQ(scheduler_.find("third")->header.state, JobState::kFailed);
+      EXPECT_NE(scheduler_.find("third")->header.message.find("second"), std::string::npos);
+    }
+  }
+}
+
+TEST_F(SchedulerTest, ALostInputFailsTheJobAndBlamesNobody) {
+  const JobId job = submit();
+  WorkerState a = worker("a", "0");
+  sync(a);
+  a.failed.push_back({a.held[0].lease, TaskFailure::kLostInput, "mesh.ply is gone"});
+  a.held.clear();
+  sync(a);
+  EXPECT_EQ(scheduler_.find(job)->header.failure, FailureKind::kJobFailed);
+  EXPECT_TRUE(scheduler_.find(job)->blames.empty());
 }
 
 TEST_F(SchedulerTest, ExplainSaysThatNobodyIsThere) {

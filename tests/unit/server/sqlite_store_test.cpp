@@ -5,6 +5,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "server/sqlite.h"
+#include "server/stored_job.h"
+
 namespace penumbra {
 namespace {
 
@@ -48,6 +51,12 @@ class SqliteStoreTest : public testing::Test {
     return job;
   }
 
+  static std::string hex(std::string_view bytes) {
+    std::string out;
+    for (const char byte : bytes) out += fmt::format("{:02x}", static_cast<unsigned char>(byte));
+    return out;
+  }
+
   fs::path path_;
 };
 
@@ -84,6 +93,82 @@ TEST_F(SqliteStoreTest, ABatchIsAllOrNothing) {
   changed.message = "changed";
   EXPECT_FALSE(store->apply({PutJob{changed}, result}).ok());  // a second result of a task
   EXPECT_EQ(store->load()->jobs[0].header.message, "m");
+}
+
+TEST_F(SqliteStoreTest, AStoreOfTheFirstVersionIsBroughtUpToDate) {
+  {
+    sqlite3* db = nullptr;
+    ASSERT_EQ(sqlite3_open(path_.c_str(), &db), SQLITE_OK);
+    const std::string sql = R"sql(
+      CREATE TABLE jobs (number INTEGER PRIMARY KEY, id TEXT UNIQUE NOT NULL, header BLOB NOT NULL);
+      CREATE TABLE leases (job TEXT NOT NULL, task INTEGER NOT NULL, epoch INTEGER NOT NULL,
+        worker TEXT NOT NULL, host TEXT NOT NULL, name TEXT NOT NULL, PRIMARY KEY (job, task)) WITHOUT ROWID;
+      CREATE TABLE results (job TEXT NOT NULL, task INTEGER NOT NULL, epoch INTEGER NOT NULL,
+        result TEXT NOT NULL, costs BLOB NOT NULL, worker TEXT NOT NULL,
+        PRIMARY KEY (job, task)) WITHOUT ROWID;
+      CREATE TABLE workers (id TEXT PRIMARY KEY, info BLOB NOT NULL) WITHOUT ROWID;
+      PRAGMA user_version = 1;
+      INSERT INTO leases VALUES('j1', 7, 3, 'w', 'h', 'n');
+      INSERT INTO jobs VALUES(1, 'j1', x')sql" +
+                            hex(serialize_header(header())) + "');";
+    ASSERT_EQ(sqlite3_exec(db, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK) << sqlite3_errmsg(db);
+    sqlite3_close(db);
+  }
+  for (int time = 0; time < 2; ++time) {  // the second time there is nothing left to do
+    const auto state = open()->load();
+    ASSERT_TRUE(state.ok()) << state.status();
+    ASSERT_EQ(state->jobs.size(), 1u);
+    EXPECT_TRUE(state->jobs[0].header == header());
+    EXPECT_EQ(state->jobs[0].leases.at(0).lease, (LeaseId{"j1", 7, 3}));
+    ASSERT_TRUE(open()->apply({PutBlame{"j1", 7, "h/n", false}}).ok());
+  }
+}
+
+TEST_F(SqliteStoreTest, ANewerSchemaIsRefused) {
+  open();
+  sqlite3* db = nullptr;
+  ASSERT_EQ(sqlite3_open(path_.c_str(), &db), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(db, "PRAGMA user_version = 99", nullptr, nullptr, nullptr), SQLITE_OK);
+  sqlite3_close(db);
+  EXPECT_TRUE(absl::IsInvalidArgument(open_sqlite_store(path_).status()));
+}
+
+TEST_F(SqliteStoreTest, BlamesAreCountedAndForgottenWithTheJob) {
+  const auto store = open();
+  const PutBlame blame{"j1", 3, "h/n", false}, death{"j1", 3, "w", true};
+  ASSERT_TRUE(store->apply({PutJob{header()}, blame, death, blame}).ok());
+  auto state = store->load();
+  ASSERT_EQ(state->jobs.at(0).blames.size(), 2u);
+  EXPECT_EQ(state->jobs[0].blames[0].count, 2u);
+  EXPECT_TRUE(state->jobs[0].blames[1].blame.death);
+  ASSERT_TRUE(store->apply({DropJob{"j1"}}).ok());
+  EXPECT_TRUE(store->load()->jobs.empty());
+  ASSERT_TRUE(store->apply({PutJob{header()}}).ok());
+  EXPECT_TRUE(store->load()->jobs.at(0).blames.empty());
+}
+
+TEST_F(SqliteStoreTest, ADroppedResultLeavesItsEpoch) {
+  const auto store = open();
+  const LeaseId lease{"j1", 0, 4};
+  ASSERT_TRUE(
+      store->apply({PutJob{header()}, PutResult{lease, Digest(64, 'c'), {}, "w"}, DropResult{lease}}).ok());
+  const auto state = store->load();
+  EXPECT_TRUE(state->jobs.at(0).results.empty());
+  EXPECT_EQ(state->jobs[0].leases.at(0).lease, lease);
+  EXPECT_EQ(state->jobs[0].leases[0].holder.worker, "");
+}
+
+TEST_F(SqliteStoreTest, TheLogIsCopiedWhileNothingWaits) {
+  const auto store = open();
+  const auto log_bytes = [&] { return fs::file_size(path_.string() + "-wal"); };
+  for (uint64_t task = 0; task < 1500; ++task)
+    ASSERT_TRUE(store->apply({PutResult{{"j1", task, 1}, Digest(64, 'c'), {}, "w"}}).ok());
+  const auto before = log_bytes();
+  EXPECT_GT(before, 4u << 20) << "nothing but rest() copies it";
+  ASSERT_TRUE(store->rest().ok());
+  for (uint64_t task = 2000; task < 2500; ++task)
+    ASSERT_TRUE(store->apply({PutResult{{"j1", task, 1}, Digest(64, 'c'), {}, "w"}}).ok());
+  EXPECT_EQ(log_bytes(), before) << "it was not written anew from its start";
 }
 
 TEST_F(SqliteStoreTest, AFileThatIsNotOursIsRefused) {

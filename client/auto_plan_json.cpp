@@ -1,0 +1,65 @@
+#include "client/auto_plan_json.h"
+
+#include "proto/auto_plan.h"
+#include "proto/status.h"
+#include "proto/tiles.h"
+
+namespace penumbra {
+namespace {
+
+/// May throw what nlohmann::json throws for a missing key or a wrong type.
+absl::StatusOr<AutoPlan> read(const Json& json, size_t tiles) {
+  AutoPlan plan;
+  plan.mix = json.at("mix").get<int>();
+  for (const Json& text : json.at("candidates")) {
+    ASSIGN_OR_RETURN(Mix mix, parse_mix(text.get<std::string>()));
+    if (mix.automatic) return invalid_input("auto_plans: `auto` is no candidate of itself");
+    plan.candidates.push_back(std::move(mix));
+  }
+  for (const Json& tile : json.at("tiles")) {
+    const TilePlan read{tile.at("candidate").get<int>(), tile.at("passes").get<int64_t>()};
+    if (read.candidate < 0 || read.candidate >= static_cast<int>(plan.candidates.size()))
+      return invalid_input("auto_plans: candidate {} of {}", read.candidate, plan.candidates.size());
+    if (read.passes < 1) return invalid_input("auto_plans: {} passes", read.passes);
+    plan.tiles.push_back(read);
+  }
+  if (plan.tiles.size() != tiles)
+    return invalid_input("auto_plans: {} tiles, where the job has {}", plan.tiles.size(), tiles);
+  return plan;
+}
+
+}  // namespace
+
+Json auto_plans_json(const JobSpec& spec, const std::vector<AutoPlan>& plans) {
+  const std::vector<PixelRect> rects = tiles_of(spec);
+  Json out = Json::array();
+  for (const AutoPlan& plan : plans) {
+    PENUMBRA_CHECK(plan.tiles.size() == rects.size());
+    Json candidates = Json::array(), tiles = Json::array();
+    for (const Mix& mix : plan.candidates) candidates.push_back(label(mix));
+    for (size_t t = 0; t < rects.size(); ++t)
+      tiles.push_back({{"rect", to_json(rects[t])},
+                       {"candidate", plan.tiles[t].candidate},
+                       {"mix", candidates[static_cast<size_t>(plan.tiles[t].candidate)]},
+                       {"passes", plan.tiles[t].passes}});
+    out.push_back({{"mix", plan.mix}, {"candidates", candidates}, {"tiles", tiles}});
+  }
+  return out;
+}
+
+absl::StatusOr<std::vector<AutoPlan>> auto_plans_from_json(const Json& json, const JobSpec& spec) {
+  std::vector<AutoPlan> plans;
+  const size_t tiles = tiles_of(spec).size();
+  try {
+    for (const Json& one : json) {
+      ASSIGN_OR_RETURN(AutoPlan plan, read(one, tiles));
+      plans.push_back(std::move(plan));
+    }
+  } catch (const Json::exception& fault) {
+    return invalid_input("auto_plans: {}", fault.what());
+  }
+  RETURN_IF_ERROR(check_auto_plans(plans, spec.mixes));
+  return plans;
+}
+
+}  // namespace penumbra

@@ -1,0 +1,57 @@
+#pragma once
+// Pass, worse or inconclusive: the decisions of `gate`, from confidence intervals alone. Pure.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "film/estimate.h"
+
+namespace penumbra {
+
+enum class Verdict { kPass, kWorse, kInconclusive };
+/// "pass", "worse", "inconclusive".
+std::string_view name_of(Verdict verdict);
+
+/// Chance that any figure of a gate is called worse though none is, and that a figure passes though it is
+/// worse than the tolerance.
+inline constexpr double kFalseAlarms = 0.003;
+inline constexpr double kMissed = 0.05;
+
+/// Judges one of `figures` figures from log(new / old). With the tolerance t:
+///   worse         the lower bound of the ratio lies above 1 + t, at a level of kFalseAlarms for all figures
+///                 together (Šidák);
+///   pass          the upper bound lies below 1 + t, at a level of kMissed;
+///   inconclusive  neither: the run was too short or the machine too noisy to say.
+/// A gate passes only if every figure does, so the second level needs no correction.
+Verdict judge(const Estimate& log_ratio, double tolerance, int64_t figures);
+
+/// Worse if any is worse; else inconclusive if any is; a gate of nothing is inconclusive.
+Verdict worst(const std::vector<Verdict>& verdicts);
+
+/// What a run says of one mix, ready to be compared. Parts (blocks of pixels, tiles) are the same in both
+/// runs and independent; their sums need not have the scale of the totals, which are what is compared.
+struct GateFigures {
+  double passes = 0;
+  std::optional<double> relmse;  ///< of the image
+  std::optional<double> floor;   ///< of the reference
+  std::optional<ConfidenceInterval> relmse_ci;
+  std::vector<double> block_relmse;  ///< empty where unknown
+  double cpu_seconds = 0;
+  std::vector<double> tile_seconds;  ///< empty where unknown
+};
+
+/// A comparison that could be made, or why not.
+struct LogRatio {
+  std::optional<Estimate> estimate;
+  std::string why_not;
+};
+
+/// Error per pass, new over old: relMSE × passes, for relMSE falls as 1/passes. The reference's floor, which
+/// does not fall, is taken off where both runs know it. The blocks, else the intervals, say how sure it is.
+LogRatio error_ratio(const GateFigures& now, const GateFigures& before);
+
+/// CPU seconds per pass in units of a calibration loop, new over old. `scale`: log of (old seconds per unit /
+/// new seconds per unit) with what is known of the noise between runs.
+LogRatio cpu_ratio(const GateFigures& now, const GateFigures& before, const Estimate& scale);
+
+}  // namespace penumbra

@@ -1,0 +1,28 @@
+// The page's one datum: {run, images, reference, notes}, made by client/report_data.cpp from the run's folder.
+const data = JSON.parse(document.getElementById("data").textContent);
+const run = data.run;
+
+/** The figure of error that this run has: against a reference, or else its own estimate. */
+const errorKind = (() => {
+  const has = (key) => run.mixes.some((m) => number(m[key]) || (m.timeline || []).some((p) => number(p[key])));
+  if (has("relmse"))
+    return { key: "relmse", name: "relMSE", estimated: false, meaning: "relmse" };
+  if (has("estimated_relmse"))
+    return { key: "estimated_relmse", name: "own estimate of relMSE", estimated: true, meaning: "estimated_relmse" };
+  return null;
+})();
+
+const errorOf = (mix) => (errorKind ? mix[errorKind.key] : undefined);
+const errorIntervalOf = (mix) => (errorKind ? mix[`${errorKind.key}_ci`] : undefined);
+
+/** The mix with the least error; nothing where there is nothing to choose from. */
+const bestMix = (() => {
+  const measured = run.mixes.filter((m) => number(errorOf(m)));
+  return measured.length > 1 ? measured.reduce((a, b) => (errorOf(b) < errorOf(a) ? b : a)) : null;
+})();
+
+/** The relMSE that a perfect image would show against this reference. */
+const referenceFloor = (() => {
+  const floors = run.mixes.map((m) => m.reference_floor).filter((v) => number(v) && v > 0);
+  return floors.length ? floors[0] : null;
+})();

@@ -1,0 +1,90 @@
+// Images as the page carries them -> numbers.
+
+/** The 65,536 values of a half float. */
+const halves = (() => {
+  const values = new Float32Array(65536);
+  for (let bits = 0; bits < 65536; ++bits) {
+    const sign = bits & 0x8000 ? -1 : 1, exponent = (bits >> 10) & 31, fraction = bits & 1023;
+    if (exponent === 31) values[bits] = fraction ? NaN : sign * Infinity;
+    else values[bits] = sign * (exponent === 0 ? fraction * 2 ** -24 : (1 + fraction / 1024) * 2 ** (exponent - 15));
+  }
+  return values;
+})();
+
+/** base64 of zlib of byte planes, low bytes first -> `count` Float32Arrays of n values, times `unit`. */
+async function decodePlanes(packed, count, n) {
+  const bytes = Uint8Array.from(atob(packed.half), (c) => c.charCodeAt(0));
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+  const raw = new Uint8Array(await new Response(stream).arrayBuffer());
+  return Array.from({ length: count }, (_, c) => {
+    const plane = new Float32Array(n), low = 2 * c * n, high = low + n;
+    for (let i = 0; i < n; ++i) plane[i] = packed.unit * halves[raw[low + i] | (raw[high + i] << 8)];
+    return plane;
+  });
+}
+
+/** {width, height, scale, x0, y0, planes: [R, G, B], cost?, samples?, noise?}; planes are row-major. */
+async function decodeImage(image) {
+  const n = image.width * image.height;
+  const out = { width: image.width, height: image.height, scale: image.scale, x0: image.x0, y0: image.y0 };
+  out.planes = await decodePlanes(image, 3, n);
+  for (const [name, layer] of Object.entries(image.layers || {})) [out[name]] = await decodePlanes(layer, 1, n);
+  return out;
+}
+
+/** Relative squared error of pixel i, channels averaged: what relMSE averages. */
+function pixelError(image, reference, i) {
+  let sum = 0;
+  for (let c = 0; c < 3; ++c) {
+    const r = reference.planes[c][i], d = image.planes[c][i] - r;
+    sum += (d * d) / (r * r + 1e-2);
+  }
+  return sum / 3;
+}
+
+/** A plane of pixelError, made once per image. */
+function errorPlane(image, reference) {
+  if (!image.error) image.error = Float32Array.from({ length: image.width * image.height }, (_, i) => pixelError(image, reference, i));
+  return image.error;
+}
+
+/** Mean of a plane over the pixels [x0,x1) × [y0,y1) of the full image. */
+function meanOver(image, plane, [x0, y0, x1, y1]) {
+  const s = image.scale, left = Math.floor((x0 - image.x0) / s), right = Math.ceil((x1 - image.x0) / s);
+  let sum = 0, count = 0;
+  for (let y = Math.floor((y0 - image.y0) / s); y < Math.ceil((y1 - image.y0) / s); ++y)
+    for (let x = left; x < right; ++x, ++count) sum += plane[y * image.width + x];
+  return count ? sum / count : NaN;
+}
+
+/** Sums of a plane over 16×16 blocks of pixels. */
+function blockSums(image, plane) {
+  const columns = Math.ceil(image.width / 16), sums = new Float64Array(columns * Math.ceil(image.height / 16));
+  for (let y = 0; y < image.height; ++y)
+    for (let x = 0; x < image.width; ++x) sums[(y >> 4) * columns + (x >> 4)] += plane[y * image.width + x];
+  return sums;
+}
+
+/** 95 % interval of the ratio of two images' errors, the same blocks drawn for both (2,000 times, always the same draws). */
+function pairedInterval(a, b) {
+  let state = 0x70656e75;
+  const random = () => {  // mulberry32
+    state = (state + 0x6d2b79f5) | 0;
+    let t = Math.imul(state ^ (state >>> 15), 1 | state);
+    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
+    return ((t ^ (t >>> 14)) >>> 0) / 4294967296;
+  };
+  if (a.length < 2) return null;
+  const ratios = new Float64Array(2000);
+  for (let r = 0; r < ratios.length; ++r) {
+    let above = 0, below = 0;
+    for (let i = 0; i < a.length; ++i) {
+      const k = Math.floor(random() * a.length);
+      above += a[k];
+      below += b[k];
+    }
+    ratios[r] = above / below;
+  }
+  ratios.sort();
+  return Number.isFinite(ratios[ratios.length - 1]) ? [ratios[50], ratios[1949]] : null;
+}

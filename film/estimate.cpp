@@ -1,0 +1,85 @@
+#include "film/estimate.h"
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include "proto/status.h"
+
+namespace penumbra {
+
+double degrees_behind(std::span<const double> deviations) {
+  // Scaled by the largest, so that fourth powers stay in range.
+  double largest = 0;
+  for (const double r : deviations) largest = std::max(largest, std::abs(r));
+  if (!(largest > 0)) return std::numeric_limits<double>::infinity();
+  double squares = 0, fourths = 0;
+  for (const double r : deviations) {
+    const double square = (r / largest) * (r / largest);
+    squares += square;
+    fourths += square * square;
+  }
+  const double n = static_cast<double>(deviations.size());
+  const double excess = n * fourths / (squares * squares) - 1;  // κ - 1 >= 0
+  // Equal magnitudes leave the rounding of the two sums.
+  if (!(excess > n * std::numeric_limits<double>::epsilon())) return std::numeric_limits<double>::infinity();
+  return 2 * n / excess;
+}
+
+ConfidenceInterval interval(const Estimate& e, double confidence) {
+  PENUMBRA_CHECK(confidence > 0 && confidence < 1);
+  if (e.standard_error == 0) return {e.value, e.value};
+  const double p = 0.5 + confidence / 2;
+  // Beyond this a quantile of t differs from the normal's by less than 1e-6.
+  const double quantile =
+      e.degrees_of_freedom > 1e6 ? normal_quantile(p) : t_quantile(p, e.degrees_of_freedom);
+  return {e.value - quantile * e.standard_error, e.value + quantile * e.standard_error};
+}
+
+ConfidenceInterval exp_interval(const Estimate& e, double confidence) {
+  const ConfidenceInterval i = interval(e, confidence);
+  return {std::exp(i.low), std::exp(i.high)};
+}
+
+Estimate sum(const Estimate& a, const Estimate& b) {
+  const double va = a.standard_error * a.standard_error, vb = b.standard_error * b.standard_error;
+  Estimate out;
+  out.value = a.value + b.value;
+  out.standard_error = std::sqrt(va + vb);
+  // Welch & Satterthwaite: (va + vb)² / (va²/νa + vb²/νb); in shares of the sum, to stay in range.
+  const double share = va + vb > 0 ? va / (va + vb) : 0.5;
+  const double spread =
+      share * share / a.degrees_of_freedom + (1 - share) * (1 - share) / b.degrees_of_freedom;
+  out.degrees_of_freedom = spread > 0 ? 1 / spread : std::numeric_limits<double>::infinity();
+  return out;
+}
+
+std::optional<Estimate> paired_log_ratio(std::span<const double> a, std::span<const double> b) {
+  PENUMBRA_CHECK(a.size() == b.size());
+  const size_t n = a.size();
+  const double sum_a = std::accumulate(a.begin(), a.end(), 0.0);
+  const double sum_b = std::accumulate(b.begin(), b.end(), 0.0);
+  if (n < 2 || !(sum_a > 0 && sum_b > 0) || !std::isfinite(sum_a) || !std::isfinite(sum_b))
+    return std::nullopt;
+  std::vector<double> deviations(n);
+  double squares = 0;
+  for (size_t i = 0; i < n; ++i) {
+    deviations[i] = a[i] / sum_a - b[i] / sum_b;
+    squares += deviations[i] * deviations[i];
+  }
+  const double count = static_cast<double>(n);
+  return Estimate{std::log(sum_a / sum_b), std::sqrt(squares * count / (count - 1)),
+                  degrees_behind(deviations)};
+}
+
+std::optional<Estimate> mean_of(std::span<const double> values) {
+  const double n = static_cast<double>(values.size());
+  if (values.size() < 2) return std::nullopt;
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  double squares = 0;
+  for (const double v : values) squares += (v - mean) * (v - mean);
+  return Estimate{mean, std::sqrt(squares / (n - 1) / n), n - 1};
+}
+
+}  // namespace penumbra

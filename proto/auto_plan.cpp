@@ -1,0 +1,38 @@
+#include "proto/auto_plan.h"
+
+#include "proto/status.h"
+
+namespace penumbra {
+
+const std::vector<Mix>& auto_candidates() {
+  static const std::vector<Mix> candidates = [] {
+    std::vector<Mix> mixes;
+    for (const char* text :
+         {"bsdf:2+sa:2", "bsdf:1+sa:1", "bsdf:1+sa:3", "bsdf:4", "sa:4", "sa:1", "bsdf:3+line-sa@v:1",
+          "bsdf:2+line-sa@v:2", "bsdf:1+line-sa@v:3", "line-sa@v:4", "line-sa@v:1"})
+      mixes.push_back(*parse_mix(text));
+    return mixes;
+  }();
+  return candidates;
+}
+
+std::vector<int> automatic_mixes(const std::vector<Mix>& mixes) {
+  std::vector<int> places;
+  for (size_t m = 0; m < mixes.size(); ++m)
+    if (mixes[m].automatic) places.push_back(static_cast<int>(m));
+  return places;
+}
+
+absl::Status check_auto_plans(const std::vector<AutoPlan>& plans, const std::vector<Mix>& mixes) {
+  if (plans.empty()) return absl::OkStatus();
+  const std::vector<int> places = automatic_mixes(mixes);
+  if (plans.size() != places.size())
+    return invalid_input("auto_plans: {} plans for {} mixes `auto`", plans.size(), places.size());
+  for (size_t i = 0; i < plans.size(); ++i)
+    if (plans[i].mix != places[i])
+      return invalid_input("auto_plans: a plan of mix {}, where that of mix {} belongs", plans[i].mix,
+                           places[i]);
+  return absl::OkStatus();
+}
+
+}  // namespace penumbra

@@ -1,0 +1,21 @@
+#pragma once
+// The `auto` mix in the words that client, server and worker share: which candidates there are, and what
+// a plan must hold to belong to a job.
+#include <vector>
+
+#include "absl/status/status.h"
+#include "proto/job.h"
+
+namespace penumbra {
+
+/// What `auto` chooses from, in the order of their numbers. On lights that no line serves, a candidate with
+/// lines becomes one with points (worker/strategies), and costs and errs accordingly.
+const std::vector<Mix>& auto_candidates();
+
+/// Places of the automatic mixes.
+std::vector<int> automatic_mixes(const std::vector<Mix>& mixes);
+
+/// InvalidArgument unless there is no plan at all, or one for each automatic mix, in their order.
+absl::Status check_auto_plans(const std::vector<AutoPlan>& plans, const std::vector<Mix>& mixes);
+
+}  // namespace penumbra

@@ -1,0 +1,15 @@
+#include "proto/tiles.h"
+
+#include <algorithm>
+
+namespace penumbra {
+
+std::vector<PixelRect> tiles_of(const JobSpec& spec) {
+  std::vector<PixelRect> tiles;
+  for (int y = spec.crop.y0; y < spec.crop.y1; y += spec.tile)
+    for (int x = spec.crop.x0; x < spec.crop.x1; x += spec.tile)
+      tiles.push_back({x, y, std::min(x + spec.tile, spec.crop.x1), std::min(y + spec.tile, spec.crop.y1)});
+  return tiles;
+}
+
+}  // namespace penumbra

@@ -1,0 +1,32 @@
+#pragma once
+// From a pilot's measurements to what `auto` does in each tile. Pure.
+//
+// The error of the image is Σ_t V_t / N_t, with V_t the sum over a tile's pixels and channels of
+// s² / (mean² + ε) of one pass, and N_t its passes; its cost is Σ_t C_t N_t. Neyman's allocation,
+// N_t ∝ √(V_t / C_t), has the least error at any cost: (Σ_t √(V_t C_t))² / cost. So a tile takes the
+// candidate with the least V C, and then the passes that follow.
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "proto/auto_plan.h"
+#include "proto/job.h"
+
+namespace penumbra {
+
+/// A pilot's blocks are small and soon warm in caches; a whole pass of the first candidate in every so many
+/// tiles tells what that makes of costs.
+inline constexpr uint64_t kCalibrationTiles = 8;
+
+/// Blocks of pixels that the pilot of a tile should measure, at most: what the budget allows.
+int pilot_blocks(const JobSpec& spec, const PixelRect& tile);
+
+/// The plan of the job's automatic mix number `number` among them. `pilot[tile]` are the costs of the pilot
+/// tasks: one per mix of the job (of an automatic mix: a whole pass of its first candidate in some tiles),
+/// then one per candidate of each automatic mix. CPU seconds S: the passes that, by the pilot's costs, take S
+/// less what the pilot took; at least one each. Target error E: the passes that bring Σ_t V_t / N_t down to E
+/// times pixels and channels; at least two each. Passes: as many in every tile; costs are counted work
+/// instead of seconds. Internal if a pilot has measured nothing.
+absl::StatusOr<AutoPlan> plan_auto(const JobSpec& spec, const std::vector<PixelRect>& tiles,
+                                   const std::vector<std::vector<MixCost>>& pilot, size_t number);
+
+}  // namespace penumbra

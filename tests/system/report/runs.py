@@ -1,0 +1,30 @@
+"""Small real runs for the tests, rendered by the program itself."""
+import pathlib
+import subprocess
+
+MIXES = ["bsdf:4", "sa:4", "bsdf:1+line-sa@v:3"]
+SIZE = "96x54"
+
+
+def penumbra(program, *arguments):
+    done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, timeout=900)
+    if done.returncode != 0:
+        raise RuntimeError(f"penumbra {arguments}: exit {done.returncode}\n{done.stderr}")
+    return done.stdout
+
+
+def render(program, scene, out, *options, mixes=MIXES):
+    flags = [flag for mix in mixes for flag in ("--mix", mix)]
+    penumbra(program, "render", scene, "--resolution", SIZE, "--tile", 32, "--out", out, "--quiet", *flags, *options)
+    return pathlib.Path(out)
+
+
+def with_reference(program, scene, folder):
+    reference = render(program, scene, folder / "reference", "--spp", 48, "--seed", 99, mixes=["bsdf:1+sa:3"])
+    image = next(reference.glob("*.exr"))
+    return render(program, scene, folder / "run", "--budget", "400ms", "--reference", image,
+                  "--region", "shade=24,24,60,50", "--region", "sky=0,0,32,16")
+
+
+def without_reference(program, scene, folder):
+    return render(program, scene, folder / "alone", "--spp", 16)

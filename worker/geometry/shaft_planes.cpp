@@ -1,0 +1,133 @@
+#include "worker/geometry/shaft_planes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "worker/geometry/line_fan.h"
+
+namespace penumbra {
+namespace {
+
+double norm1(const Vec3d& v) {
+  return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
+}
+
+/// Half-space n·q + offset >= 0 with n scaled to |n|₁ = 1, widened by `slack`.
+ShaftFace face_of(const Vec3d& n, double offset, double slack) {
+  const double scale = 1 / norm1(n);
+  return {Vec3f(n * scale), static_cast<float>(offset * scale + slack)};
+}
+
+/// Sides thinner than this, as a share of the farthest corner's squared distance, have a direction that
+/// double precision (2⁻⁵³ of that square, a few times) does not give to the 2⁻²⁵ of single precision.
+constexpr double kThinnestSide = 0x1p-25;
+
+}  // namespace
+
+LightPolygon LightPolygon::quad(const Vec3f& o, const Vec3f& u, const Vec3f& v, PrimitiveId light,
+                                uint32_t light_primitives) {
+  LightPolygon polygon;
+  const Vec3d p(o), a(u), b(v);
+  polygon.corners = {p, p + a, p + a + b, p + b};
+  polygon.normal = a.cross(b).normalized();
+  for (const Vec3d& c : polygon.corners)
+    for (int k = 0; k < 3; ++k) polygon.largest = std::max(polygon.largest, std::abs(c[k]));
+  polygon.light = light;
+  polygon.light_primitives = light_primitives;
+  return polygon;
+}
+
+LightPolygon LightPolygon::triangle(const Vec3f& p0, const Vec3f& p1, const Vec3f& p2, PrimitiveId light,
+                                    uint32_t light_primitives) {
+  LightPolygon polygon;
+  polygon.corners = {Vec3d(p0), Vec3d(p1), Vec3d(p2), Vec3d(p2)};
+  polygon.normal = (Vec3d(p1) - Vec3d(p0)).cross(Vec3d(p2) - Vec3d(p0)).normalized();
+  for (const Vec3d& c : polygon.corners)
+    for (int k = 0; k < 3; ++k) polygon.largest = std::max(polygon.largest, std::abs(c[k]));
+  polygon.light = light;
+  polygon.light_primitives = light_primitives;
+  return polygon;
+}
+
+ShaftPlanes make_shaft_planes(const ShaftQuery& query, double reach) {
+  ShaftPlanes s;
+  const LightPolygon& light = *query.light;
+  s.x = query.x;
+  s.x_exact = Vec3d(query.x);
+  Vec3d sum(0, 0, 0), lo(0, 0, 0), hi(0, 0, 0);
+  double farthest2 = 0;
+  for (int i = 0; i < 4; ++i) {
+    const Vec3d& a = s.corners[i] = light.corners[i] - s.x_exact;
+    farthest2 = std::max(farthest2, a.length2());
+    sum += a;
+    for (int k = 0; k < 3; ++k) lo[k] = std::min(lo[k], a[k]), hi[k] = std::max(hi[k], a[k]);
+  }
+  s.farthest = std::sqrt(farthest2);
+  s.middle = Vec3f(sum * 0.25);
+  // The ends of chords are rounded to single precision; those of shadow segments lie up to 32 roundings
+  // before the light (strategies: end_on_light).
+  const double rounding = 36 * kFloatRoundoff * (light.largest + s.farthest);
+  s.height = -(light.normal ^ s.corners[0]) - rounding;
+  if (!(s.height > rounding)) return s;
+  s.slack = 128 * kFloatRoundoff * reach * (s.farthest / s.height) + rounding;
+  for (int i = 0; i < 4; ++i) {
+    const Vec3d n = s.corners[(i + 1) % 4].cross(s.corners[i]);
+    if (s.corners[i] == s.corners[(i + 1) % 4]) continue;  // a triangle has no fourth side
+    if (!(norm1(n) > kThinnestSide * farthest2)) return s;
+    s.faces[s.face_count++] = face_of(n, 0, s.slack);
+  }
+  s.faces[s.face_count++] = face_of(light.normal, -(light.normal ^ s.corners[0]), s.slack);
+  if (query.horizon != Vec3f(0, 0, 0)) s.faces[s.face_count++] = face_of(Vec3d(query.horizon), 0, s.slack);
+  s.lo = Vec3f(lo) - Vec3f(static_cast<float>(s.slack));
+  s.hi = Vec3f(hi) + Vec3f(static_cast<float>(s.slack));
+  s.usable = true;
+  return s;
+}
+
+bool ShaftPlanes::plane_clears(const Vec3f p[3]) const {
+  const Vec3d q = Vec3d(p[0]) - x_exact, e1 = Vec3d(p[1]) - Vec3d(p[0]), e2 = Vec3d(p[2]) - Vec3d(p[0]);
+  const Vec3d n = e1.cross(e2);
+  const double h = -(n ^ q);  // of x over the plane, times |n|
+  const double side = h < 0 ? -1 : 1;
+  // The products and sums of n·q round by a few 2⁻⁵³ of |e1| |e2| |q|.
+  const double size = n.length();
+  if (!(std::abs(h) > 0x1p-48 * norm1(e1) * norm1(e2) * norm1(q))) return false;
+  double lowest = side * (n ^ corners[0]);
+  for (int i = 1; i < 4; ++i) lowest = std::min(lowest, side * (n ^ corners[i]));
+  if (lowest >= 0x1p-6 * farthest * size) return true;
+  const double least = slack * size;
+  return std::abs(h) > least && std::abs(h) + lowest > least;
+}
+
+bool ShaftPlanes::covered_by(const Vec3f p[3]) const {
+  Vec3d q[3];
+  for (int i = 0; i < 3; ++i) q[i] = Vec3d(p[i]) - x_exact;
+  const Vec3d e1 = q[1] - q[0], e2 = q[2] - q[0];
+  Vec3d n = e1.cross(e2);
+  double h = n ^ q[0];
+  const double turn = h < 0 ? -1 : 1;  // seen from x: clockwise or not
+  n *= turn, h *= turn;
+  constexpr double kNoise = 64 * kFloatRoundoff;  // Embree's roundings; see the derivation above
+  const double edges = norm1(e1) * norm1(e2);
+  if (!(h > kNoise * edges * norm1(q[0]))) return false;
+  double along[4];  // x → corner meets the plane at h/along of its length
+  for (int i = 0; i < 4; ++i) {
+    along[i] = n ^ corners[i];
+    if (!((along[i] - h) * height > slack * along[i])) return false;
+    if (!(along[i] - h > kNoise * edges * (norm1(corners[i]) + norm1(q[0])))) return false;
+  }
+  for (int j = 0; j < 3; ++j) {
+    const Vec3d &from = q[j], &to = q[(j + 1) % 3];
+    const Vec3d side = from.cross(to) * turn;
+    const double room = slack * side.length();
+    const double noise = kNoise * norm1(to - from) * (norm1(from) + norm1(to));
+    for (int i = 0; i < 4; ++i) {
+      const double inside = side ^ corners[i];
+      if (!(inside * h > room * along[i])) return false;
+      if (!(inside > noise * norm1(corners[i]))) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace penumbra
