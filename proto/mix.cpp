@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "proto/status.h"
 
@@ -57,14 +58,18 @@ absl::StatusOr<StrategyCount> parse_strategy(std::string_view word) {
   if (name == "sa") { s.kind = StrategyKind::kSolidAngle; return s; }
   if (name == "line-sa@u") { s.kind = StrategyKind::kLineSolidAngleU; return s; }
   if (name == "line-sa@v") { s.kind = StrategyKind::kLineSolidAngleV; return s; }
-  const bool analytic = consume_prefix(name, "line-analytic@");
-  if (analytic || consume_prefix(name, "line-area@")) {
-    s.kind = analytic ? StrategyKind::kLineAnalytic : StrategyKind::kLineArea;
+  constexpr std::pair<std::string_view, StrategyKind> kAtAnAngle[] = {
+      {"line-area@", StrategyKind::kLineArea},
+      {"line-uniform@", StrategyKind::kLineUniform},
+      {"line-analytic@", StrategyKind::kLineAnalytic}};
+  for (const auto& [prefix, kind] : kAtAnAngle) {
+    if (!consume_prefix(name, prefix)) continue;
+    s.kind = kind;
     ASSIGN_OR_RETURN(s.angle_degrees, parse_angle(word, name));
     return s;
   }
   return fault(word, "unknown strategy; there are bsdf, area, sa, line-area@DEG, line-sa@u, line-sa@v, "
-                     "line-analytic@DEG and, alone, auto");
+                     "line-uniform@DEG, line-analytic@DEG and, alone, auto");
 }
 
 absl::Status parse_combination(std::string_view word, Mix& mix) {
@@ -97,6 +102,7 @@ std::string name_of(const StrategyCount& s) {
     case StrategyKind::kLineArea: return fmt::format("line-area@{}", s.angle_degrees);
     case StrategyKind::kLineSolidAngleU: return "line-sa@u";
     case StrategyKind::kLineSolidAngleV: return "line-sa@v";
+    case StrategyKind::kLineUniform: return fmt::format("line-uniform@{}", s.angle_degrees);
     case StrategyKind::kLineAnalytic: return fmt::format("line-analytic@{}", s.angle_degrees);
   }
   std::abort();
@@ -118,8 +124,7 @@ std::string name_of(const Mix& mix) {
 }  // namespace
 
 bool is_line(StrategyKind kind) {
-  return kind == StrategyKind::kLineArea || kind == StrategyKind::kLineSolidAngleU ||
-         kind == StrategyKind::kLineSolidAngleV || kind == StrategyKind::kLineAnalytic;
+  return kind != StrategyKind::kBsdf && kind != StrategyKind::kArea && kind != StrategyKind::kSolidAngle;
 }
 
 int Mix::samples() const {

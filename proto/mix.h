@@ -17,6 +17,7 @@ enum class StrategyKind {
   kLineArea,             ///< `line-area@DEG`: chord at DEG from edge u, offset by chord length
   kLineSolidAngleU,      ///< `line-sa@u`: chord parallel to edge u, uniform solid angle
   kLineSolidAngleV,      ///< `line-sa@v`: chord parallel to edge v, uniform solid angle
+  kLineUniform,          ///< `line-uniform@DEG`: as kLineArea, but offset uniform across the light
   kLineAnalytic,         ///< `line-analytic@DEG`: Billen & Dutré 2016
 };
 
@@ -25,7 +26,7 @@ bool is_line(StrategyKind kind);
 
 struct StrategyCount {
   StrategyKind kind = StrategyKind::kBsdf;
-  double angle_degrees = 0;  ///< kLineArea and kLineAnalytic only, in [0,180)
+  double angle_degrees = 0;  ///< of the kinds with `@DEG`, in [0,180)
   int count = 1;             ///< samples per shading point and light, >= 1
   bool operator==(const StrategyCount&) const = default;
 };

@@ -41,4 +41,29 @@ double sample_height(double y0, double length, double d2, double v) {
   return std::min(std::max(t, 0.0), length);  // rounding only: t is in [0,length] for v in [0,1]
 }
 
+namespace {
+
+/// Angle at x between the points at t and t + step of a line at distance d.
+double angle_between(double t, double step, double d) {
+  return std::atan2(d * step, d * d + t * (t + step));
+}
+
+}  // namespace
+
+double versine_difference(double t0, double d, double near, double far) {
+  const double first = angle_between(t0, near, d), half = 0.5 * angle_between(t0 + near, far - near, d);
+  return 2 * std::sin(first + half) * std::sin(half);
+}
+
+double sample_versine(double t0, double d, double near, double far, double v) {
+  // 1 − cosθ = 2 sin²(θ/2) interpolates; θ = 0 is t0, and t − t0 = r² sinθ / (d cosθ − t0 sinθ), r² = d² +
+  // t0².
+  const double half = 0.5 * angle_between(t0, near, d), base = 2 * std::sin(half) * std::sin(half);
+  const double versine = base + v * versine_difference(t0, d, near, far);
+  const double sin_half = std::sqrt(std::min(0.5 * versine, 1.0));
+  const double sine = 2 * sin_half * std::sqrt(1 - sin_half * sin_half), cosine = 1 - 2 * sin_half * sin_half;
+  const double t = (d * d + t0 * t0) * sine / (d * cosine - t0 * sine);
+  return std::min(std::max(t, near), far);  // rounding only
+}
+
 }  // namespace penumbra

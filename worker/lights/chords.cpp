@@ -119,15 +119,32 @@ LightLine ParallelChords::choose(double u) const {
   return line_between(below, above, sum > 0 ? std::min(xi * (below.length + above.length) / sum, 1.0) : 0);
 }
 
-LightLine ParallelChords::through(const Vec3d& p) const {
-  if (count_ == 0) return {};
-  const double s = (p - corner_).dot(across_);
+LightLine ParallelChords::at_offset(double s) const {
   int i = 1;
   while (i + 1 < count_ && !(s < cuts_[i].offset)) ++i;
   const double height = cuts_[i].offset - cuts_[i - 1].offset;
-  // p lies in the polygon to rounding: what sticks out is moved to its border.
+  // The offset lies in the polygon to rounding: what sticks out is moved to its border.
   const double f = height > 0 ? std::min(std::max((s - cuts_[i - 1].offset) / height, 0.0), 1.0) : 0;
   return line_between(cuts_[i - 1], cuts_[i], f);
+}
+
+LightLine ParallelChords::through(const Vec3d& p) const {
+  return count_ == 0 ? LightLine() : at_offset((p - corner_).dot(across_));
+}
+
+LightLine ParallelChords::uniform(LightLine line) const {
+  const double area = (cuts_[count_ - 1].offset - cuts_[0].offset) * line.along.length();
+  line.scale = area > 0 ? 1 / area : 0;
+  return line;
+}
+
+LightLine ParallelChords::choose_uniform(double u) const {
+  if (count_ == 0) return {};
+  return uniform(at_offset((1 - u) * cuts_[0].offset + u * cuts_[count_ - 1].offset));
+}
+
+LightLine ParallelChords::through_uniform(const Vec3d& p) const {
+  return count_ == 0 ? LightLine() : uniform(through(p));
 }
 
 }  // namespace penumbra

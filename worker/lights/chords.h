@@ -18,6 +18,9 @@ class ParallelChords {
   LightLine choose(double u) const;
   /// The chord through p.
   LightLine through(const Vec3d& p) const;
+  /// The same with offsets uniform across the light: of density 1 / width, whatever the chord's length.
+  LightLine choose_uniform(double u) const;
+  LightLine through_uniform(const Vec3d& p) const;
 
  private:
   /// Of one offset: the chord's ends (minus the polygon's first corner) and its length.
@@ -32,6 +35,8 @@ class ParallelChords {
   };
   class Chain;
   void cut_at_corners(std::span<const Corner> corners);
+  LightLine at_offset(double s) const;
+  LightLine uniform(LightLine line) const;
   LightLine line_between(const Cut& below, const Cut& above, double fraction) const;
 
   // Cuts through the corners, by ascending offset; between two of them a chord's ends move linearly.

@@ -6,6 +6,7 @@
 
 #include "worker/lights/chord_measure.h"
 #include "worker/lights/chords.h"
+#include "worker/lights/triangle_fan.h"
 
 namespace penumbra {
 
@@ -15,7 +16,7 @@ bool has_line_area(const LightShape& shape) {
 
 bool has_line_solid_angle(const LightShape& shape) {
   const auto* quad = std::get_if<QuadShape>(&shape);
-  return quad != nullptr && quad->rectangle();
+  return std::holds_alternative<TriangleShape>(shape) || (quad != nullptr && quad->rectangle());
 }
 
 LightLine choose_line_area(const LightShape& shape, double radians, double u) {
@@ -47,15 +48,21 @@ LightLine rectangle_line(const SeenShape& seen, bool along_u, const RectangleCho
 }  // namespace
 
 LightLine choose_line_solid_angle(const SeenShape& seen, bool along_u, double u) {
+  if (seen.solid_angle() == 0) return {};
+  if (const auto* triangle = std::get_if<TriangleShape>(&seen.shape()))
+    return TriangleFan(*triangle, seen.x(), along_u, seen.solid_angle()).choose(u);
   const SphericalRectangle* rectangle = seen.rectangle();
-  if (rectangle == nullptr || seen.solid_angle() == 0) return {};
+  if (rectangle == nullptr) return {};
   const RectangleChord chord = rectangle->chord(along_u, u);
   return rectangle_line(seen, along_u, chord, chord.offset.t / rectangle->edge_length(along_u ? 1 : 0));
 }
 
 LightLine line_solid_angle_through(const SeenShape& seen, bool along_u, const Vec3d& p) {
+  if (seen.solid_angle() == 0) return {};
+  if (const auto* triangle = std::get_if<TriangleShape>(&seen.shape()))
+    return TriangleFan(*triangle, seen.x(), along_u, seen.solid_angle()).through(p);
   const SphericalRectangle* rectangle = seen.rectangle();
-  if (rectangle == nullptr || seen.solid_angle() == 0) return {};
+  if (rectangle == nullptr) return {};
   const auto& quad = std::get<QuadShape>(seen.shape());
   const Vec3d across(along_u ? quad.v : quad.u);
   // p lies on the rectangle to rounding: what sticks out is moved to its border.
@@ -78,6 +85,10 @@ double relative_measure_of(const AngularMeasure& m, double lo, double hi) {
   if (!(m.total > 0)) return hi - lo;
   return height_difference(m.y0 + lo * m.length, (hi - lo) * m.length, m.d2) / m.total;
 }
+double relative_measure_of(const ApexMeasure& m, double lo, double hi) {
+  if (!(m.total > 0)) return hi - lo;
+  return versine_difference(m.t0, m.d, lo * m.length, hi * m.length) / m.total;
+}
 
 /// The point of [lo,hi] at fraction v of its measure.
 double sample_within(const LengthMeasure&, double lo, double hi, double v) {
@@ -86,6 +97,10 @@ double sample_within(const LengthMeasure&, double lo, double hi, double v) {
 double sample_within(const AngularMeasure& m, double lo, double hi, double v) {
   if (!(m.total > 0)) return lo + v * (hi - lo);
   return lo + sample_height(m.y0 + lo * m.length, (hi - lo) * m.length, m.d2, v) / m.length;
+}
+double sample_within(const ApexMeasure& m, double lo, double hi, double v) {
+  if (!(m.total > 0)) return lo + v * (hi - lo);
+  return sample_versine(m.t0, m.d, lo * m.length, hi * m.length, v) / m.length;
 }
 
 /// Light point minus x.
@@ -97,7 +112,7 @@ Vec3d offset_from(const LightLine& line, const Vec3d& x, double s) {
 double base_density(const LightLine& line, const Vec3d& x, double s) {
   const double height = (x - line.corner).dot(line.n);
   if (!(height > 0)) return 0;
-  if (std::holds_alternative<AngularMeasure>(line.measure)) return line.scale;
+  if (!std::holds_alternative<LengthMeasure>(line.measure)) return line.scale;
   const double r2 = offset_from(line, x, s).length2();
   return line.scale * r2 * std::sqrt(r2) / height;
 }

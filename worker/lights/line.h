@@ -16,6 +16,12 @@ struct AngularMeasure {
   double y0 = 0, length = 0, d2 = 0;
   double total = 0;  ///< h(y0 + length) − h(y0)
 };
+/// Uniform in the versine 1 − cosθ of the angle at x from the chord's first end, an apex (line-sa,
+/// triangles).
+struct ApexMeasure {
+  double t0 = 0, length = 0, d = 0;  ///< of the apex, along the chord from the foot of x; distance of x
+  double total = 0;                  ///< versine of the other end
+};
 
 /// A chord of a light, chosen by a line strategy. P(s) = a + s (b - a), s in [0,1]. A default-made line is
 /// «no such line»: every density on it is 0.
@@ -23,9 +29,10 @@ struct LightLine {
   Vec3d a{0, 0, 0}, b{0, 0, 0};
   Vec3d n{0, 0, 0};  ///< unit normal of the light's plane, emission side
   /// Density per solid angle of a point at s = base(s) * total/visible, in the measure below;
-  /// for LengthMeasure: (1/A) r²/cosθ; for AngularMeasure: 1/S.
-  double scale = 0;  ///< 1/A or 1/S; 0: no such line
-  std::variant<LengthMeasure, AngularMeasure> measure;
+  /// for LengthMeasure: scale r²/cosθ, with scale × chord length the density of the chord's offset
+  /// (1/A where that goes with the length); for the others: scale = 1/S.
+  double scale = 0;  ///< 0: no such line
+  std::variant<LengthMeasure, AngularMeasure, ApexMeasure> measure;
   /// a and b without the rounding of large scene offsets: a = corner + from, b = a + along, corner exact.
   Vec3d corner{0, 0, 0}, from{0, 0, 0}, along{0, 0, 0};
 };
@@ -37,11 +44,12 @@ LightLine choose_line_area(const LightShape& shape, double radians, double u);
 /// The line of that strategy through a point p of the shape.
 LightLine line_area_through(const LightShape& shape, double radians, const Vec3d& p);
 
-/// `line-sa@u` / `line-sa@v` on a rectangle: lines parallel to edge u (`along_u`) or v.
+/// `line-sa@u` / `line-sa@v`: on a rectangle, lines parallel to edge u (`along_u`) or v; on a triangle, lines
+/// through a corner (triangle_fan.h).
 LightLine choose_line_solid_angle(const SeenShape& seen, bool along_u, double u);
 LightLine line_solid_angle_through(const SeenShape& seen, bool along_u, const Vec3d& p);
 
-/// Which strategies a shape has lines for: quads and triangles; rectangles.
+/// Which strategies a shape has lines for: quads and triangles; rectangles and triangles.
 bool has_line_area(const LightShape& shape);
 bool has_line_solid_angle(const LightShape& shape);
 

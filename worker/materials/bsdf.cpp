@@ -14,6 +14,14 @@ namespace {
 template <class L>
 constexpr bool kSmooth = !std::decay_t<L>::kSpecular;
 
+template <class L>
+constexpr bool kLambertian =
+    std::is_same_v<std::decay_t<L>, Lambert> || std::is_same_v<std::decay_t<L>, LambertTransmission>;
+
+bool is_lambertian(const Lobe& lobe) {
+  return std::visit([](const auto& kind) { return kLambertian<decltype(kind)>; }, lobe);
+}
+
 }  // namespace
 
 /// A pair of directions in the shading frame, and where they lie about the geometric surface.
@@ -115,6 +123,43 @@ double Bsdf::pdf(const Pair& directions) const {
 
 Rgb Bsdf::f(const Vec3f& wo, const Vec3f& wi) const {
   return f(pair(wo, wi));
+}
+
+Rgb Bsdf::lambertian(bool reflected) const {
+  Rgb sum(0);
+  const Vec3d any(0, 0, 1);
+  for (int i = 0; i < count_; ++i) {
+    std::visit(
+        [&](const auto& lobe) {
+          if constexpr (kLambertian<decltype(lobe)>) {
+            if (lobe.kTransmits != reflected) sum += lobes_[i].scale * penumbra::f(lobe, any, any);
+          }
+        },
+        lobes_[i].lobe);
+  }
+  return sum;
+}
+
+Rgb Bsdf::f_beyond_lambertian(const Vec3f& wo, const Vec3f& wi) const {
+  const Pair directions = pair(wo, wi);
+  Rgb sum(0);
+  for (int i = 0; i < count_; ++i) {
+    std::visit(
+        [&](const auto& lobe) {
+          if constexpr (kSmooth<decltype(lobe)> && !kLambertian<decltype(lobe)>) {
+            if (directions.serves(lobe.kTransmits))
+              sum += lobes_[i].scale * penumbra::f(lobe, directions.wo, directions.wi);
+          }
+        },
+        lobes_[i].lobe);
+  }
+  return sum;
+}
+
+bool Bsdf::only_lambertian() const {
+  for (int i = 0; i < count_; ++i)
+    if (lobes_[i].weight > 0 && !is_lambertian(lobes_[i].lobe)) return false;
+  return true;
 }
 
 double Bsdf::pdf(const Vec3f& wo, const Vec3f& wi) const {

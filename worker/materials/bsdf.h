@@ -29,6 +29,11 @@ class Bsdf {
 
   /// Sum of the non-specular lobes that serve this pair of directions.
   Rgb f(const Vec3f& wo, const Vec3f& wi) const;
+  /// The part of f that is constant (Lambert's lobes) where light is reflected or, else, transmitted; the rest of
+  /// f; whether there is no rest. For integrals in closed form.
+  Rgb lambertian(bool reflected) const;
+  Rgb f_beyond_lambertian(const Vec3f& wo, const Vec3f& wi) const;
+  bool only_lambertian() const;
   /// Density of sample() over the non-specular lobes at wi, sr⁻¹. Zero where it cannot reach.
   double pdf(const Vec3f& wo, const Vec3f& wi) const;
   /// A direction from the non-specular lobes; empty if there is none or the sample failed.

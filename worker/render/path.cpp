@@ -9,8 +9,8 @@
 namespace penumbra {
 namespace {
 
-// select(depth, i): light draws use i < LightSet::kMostAsked, the specular choice the next one.
-constexpr int kSpecularChoice = LightSet::kMostAsked;
+// select(depth, i): the specular choice.
+constexpr int kSpecularChoice = 0;
 
 float largest(const Rgb& c) { return std::max({c.x, c.y, c.z}); }
 

@@ -66,7 +66,7 @@ std::vector<std::string> substitutions(const Scene& scene, const Mix& mix) {
     std::string name = label(alone);
     name.resize(name.find(':'));
     for (const AreaEmitter& emitter : scene.lights.area) {
-      const std::string instead = name_of(fit(wanted, emitter));
+      const std::string instead = name_of(fit(in_company(wanted, mix), emitter));
       if (instead != name) ++counts[{name, shape_name(emitter.shape), instead}];
     }
   }

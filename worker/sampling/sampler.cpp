@@ -11,7 +11,7 @@ namespace {
 constexpr int64_t kMostSamples = (int64_t{1} << 32) - 1;
 
 // What a stream of numbers is for; part of its key.
-enum class Use : uint32_t { kFilm, kLens, kTime, kLight, kChoice, kSelect, kFilmAgain };
+enum class Use : uint32_t { kFilm, kLens, kTime, kLight, kChoice, kSelect, kFilmAgain, kLine, kDraw };
 
 /// Key of one stream of a pixel and group. `a` and `b` number the streams of a use.
 uint64_t stream_key(uint64_t key, Use use, uint64_t a = 0, uint64_t b = 0) {
@@ -103,6 +103,14 @@ Vec2d PassSampler::light(int depth, uint32_t light, int slot, int i, int n) cons
 
 double PassSampler::choice(int depth, uint32_t light, int slot, int i, int n) const {
   return segment(light_key(key_, Use::kChoice, depth, light, slot), i, n);
+}
+
+double PassSampler::line(int depth, uint32_t light, int slot, int i, int n) const {
+  return segment(light_key(key_, Use::kLine, depth, light, slot), i, n);
+}
+
+double PassSampler::draw(int depth, int i, int n) const {
+  return segment(stream_key(key_, Use::kDraw, static_cast<uint32_t>(depth)), i, n);
 }
 
 double PassSampler::select(int depth, int i) const {

@@ -40,7 +40,11 @@ class PassSampler {
   Vec2d light(int depth, uint32_t light, int slot, int i, int n) const;
   /// A third number for the same sample: which lobe, which part of the light.
   double choice(int depth, uint32_t light, int slot, int i, int n) const;
-  /// For choosing lights and for specular branches; `i` counts the uses.
+  /// The same for a strategy that takes one number: stratified in one dimension.
+  double line(int depth, uint32_t light, int slot, int i, int n) const;
+  /// For drawing n lights in a pass: stratified over them and over the passes of a group.
+  double draw(int depth, int i, int n) const;
+  /// For specular branches; `i` counts the uses.
   double select(int depth, int i) const;
 
  private:

@@ -24,7 +24,7 @@ struct Found {
 /// Keeps scratch memory; belongs to one thread.
 class Combiner {
  public:
-  /// Per slot: expected samples, > 0; whether its strategy is a line.
+  /// Per slot: expected samples (0: the strategy has no say); whether its strategy is a line.
   void start(Combination how, std::span<const double> counts, const std::vector<bool>& lines);
 
   /// Weight of the strategy that found the point, among all that could have: Σ over the slots is 1.

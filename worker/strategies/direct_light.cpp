@@ -34,28 +34,59 @@ Vec3f end_on_light(const LightPoint& at, const Vec3d& x) {
 }  // namespace
 
 Rgb DirectLight::estimate(const ShadingPoint& point, const PassSampler& sampler, int depth) {
+  trace_bsdf(point, sampler, depth);
+  const LightSet& lights = scene_.lights;
+  if (lights.draws()) return draw_lights(point, sampler, depth);
   Rgb sum(0);
+  constexpr int kOnce[] = {0};
+  for (size_t l = 0; l < lights.area.size() + lights.environments.size(); ++l) {
+    const LightView view = view_of(point, l);
+    sum += ask({view, l, 1, kOnce, 1, uint32_t(l)}, sampler, depth);
+  }
+  for (const DeltaEmitter& e : lights.delta) sum += delta(point, e);
+  return sum;
+}
+
+/// Many lights: some are drawn, and the chance of being drawn is part of every density. What the material's
+/// own directions met counts once, whether that light was drawn or not.
+Rgb DirectLight::draw_lights(const ShadingPoint& point, const PassSampler& sampler, int depth) {
+  constexpr int kDraws = LightSet::kMostAsked;
   const LightSet& lights = scene_.lights;
   const size_t extended = lights.area.size() + lights.environments.size();
-  trace_bsdf(point, sampler, depth);
-  if (!lights.draws()) {
-    for (size_t l = 0; l < extended; ++l) sum += ask(point, l, 1, true, uint32_t(l), sampler, depth);
-    for (const DeltaEmitter& e : lights.delta) sum += delta(point, e);
-    return sum;
-  }
-  // Many lights: some are drawn, and the chance of being drawn is part of every density. What the
-  // material's own directions met counts once, whether that light was drawn or not.
-  for (int d = 0; d < LightSet::kMostAsked; ++d) {
-    const size_t l = lights.draw(sampler.select(depth, d));
-    const double draws = LightSet::kMostAsked * lights.probability(l);
-    if (l < extended) sum += ask(point, l, draws, true, kDrawStream + uint32_t(d), sampler, depth);
-    else sum += delta(point, lights.delta[l - extended]) / float(draws);
+  const Receiver receiver{Vec3d(point.above), !point.transmits, Vec3d(point.normal)};
+  Rgb sum(0);
+  drawn_.clear();
+  for (int d = 0; d < kDraws; ++d) drawn_.push_back(lights.draw(receiver, sampler.draw(depth, d, kDraws)));
+  for (size_t d = 0; d < drawn_.size(); ++d) {
+    const DrawnLight first = drawn_[d];
+    if (!(first.probability > 0)) continue;
+    // All turns of one light together: its lines and what it looks like from here are made once.
+    turns_.clear();
+    for (size_t e = d; e < drawn_.size(); ++e) {
+      if (!(drawn_[e].probability > 0) || drawn_[e].light != first.light) continue;
+      turns_.push_back(int(e));
+      drawn_[e].probability = 0;
+    }
+    const double draws = kDraws * first.probability;
+    if (first.light < extended) {
+      const LightView view = view_of(point, first.light);
+      sum += ask({view, first.light, draws, turns_, kDraws, kDrawStream}, sampler, depth);
+    } else {
+      sum += delta(point, lights.delta[first.light - extended]) * float(double(turns_.size()) / draws);
+    }
   }
   while (!hits_.empty()) {
     const size_t l = hits_.back().light;
-    sum += ask(point, l, LightSet::kMostAsked * lights.probability(l), false, 0, sampler, depth);
+    const LightView view = view_of(point, l);
+    sum += ask({view, l, kDraws * lights.probability(receiver, l)}, sampler, depth);
   }
   return sum;
+}
+
+LightView DirectLight::view_of(const ShadingPoint& point, size_t light) const {
+  const LightSet& lights = scene_.lights;
+  if (light < lights.area.size()) return LightView(point, lights.area[light]);
+  return LightView(point, lights.environments[light - lights.area.size()]);
 }
 
 /// Traces the directions of the mix's bsdf samples once, for all lights, and keeps those that met one.
@@ -96,25 +127,21 @@ void DirectLight::trace_bsdf(const ShadingPoint& point, const PassSampler& sampl
   }
 }
 
-Rgb DirectLight::ask(const ShadingPoint& point, size_t light, double draws, bool draw_samples,
-                     uint32_t stream, const PassSampler& sampler, int depth) {
-  const LightSet& lights = scene_.lights;
-  const LightView view = light < lights.area.size()
-                             ? LightView(point, lights.area[light])
-                             : LightView(point, lights.environments[light - lights.area.size()]);
-  const Task task{view, light, draws};
+Rgb DirectLight::ask(const Task& task, const PassSampler& sampler, int depth) {
   candidates_.clear();
   own_lines_.clear();
+  integrated_ = Rgb(0);
   sight_.skip();
+  start_combiner(task);
   // With drawn lights the material's hits are asked on their own, once.
-  if (!draw_samples || !lights.draws()) gather_bsdf(task);
-  if (draw_samples && may_reach(task)) {
-    gather_points(task, stream, sampler, depth);
-    gather_lines(task, stream, sampler, depth);
+  if (task.turns.empty() || !scene_.lights.draws()) gather_bsdf(task);
+  if (!task.turns.empty() && may_reach(task)) {
+    gather_points(task, sampler, depth);
+    gather_lines(task, sampler, depth);
   }
-  if (candidates_.empty()) return Rgb(0);
+  if (candidates_.empty()) return integrated_;
   resolve(task);
-  return combine(task);
+  return integrated_ + combine();
 }
 
 void DirectLight::gather_bsdf(const Task& task) {
@@ -124,48 +151,78 @@ void DirectLight::gather_bsdf(const Task& task) {
   std::erase_if(hits_, mine);
 }
 
-void DirectLight::gather_points(const Task& task, uint32_t stream, const PassSampler& sampler, int depth) {
+Vec2d DirectLight::numbers(const Task& task, size_t slot, int turn, int i, const PassSampler& sampler,
+                           int depth) const {
+  const PreparedMix::Slot s = task.slot(mix_, slot);
+  const int sample = turn * s.count + i, in_all = task.draws_in_all * s.count;
+  if (!is_analytic(s.strategy)) return sampler.light(depth, task.stream, int(slot), sample, in_all);
+  return {sampler.line(depth, task.stream, int(slot), sample, in_all),
+          sampler.choice(depth, task.stream, int(slot), sample, in_all)};
+}
+
+void DirectLight::gather_points(const Task& task, const PassSampler& sampler, int depth) {
   for (size_t s = 0; s < mix_.slots(); ++s) {
     const PreparedMix::Slot slot = task.slot(mix_, s);
     if (is_bsdf(slot.strategy) || is_line(slot.strategy)) continue;
-    for (int i = 0; i < slot.count; ++i) {
-      const Vec2d u = sampler.light(depth, stream, int(s), i, slot.count);
-      push(task, sample_point(slot.strategy, task.view, u), s, Sight::kUnknown, kNoLine, 0);
-    }
+    for (const int turn : task.turns)
+      for (int i = 0; i < slot.count; ++i) {
+        const Vec2d u = numbers(task, s, turn, i, sampler, depth);
+        push(task, sample_point(slot.strategy, task.view, u), s, Sight::kUnknown, kNoLine, 0);
+      }
+  }
+}
+
+void DirectLight::choose_lines(const Task& task, const PassSampler& sampler, int depth) {
+  for (size_t s = 0; s < mix_.slots(); ++s) {
+    const PreparedMix::Slot slot = task.slot(mix_, s);
+    if (!is_line(slot.strategy)) continue;
+    for (const int turn : task.turns)
+      for (int i = 0; i < slot.count; ++i) {
+        const Vec2d u = numbers(task, s, turn, i, sampler, depth);
+        own_lines_.add(choose_line(slot.strategy, task.view, u.x), task.view.point(), task.view.area());
+      }
   }
 }
 
 /// All lines of all line strategies first, traced in one call; then a point on each one's visible part.
-void DirectLight::gather_lines(const Task& task, uint32_t stream, const PassSampler& sampler, int depth) {
-  for (size_t s = 0; s < mix_.slots(); ++s) {
-    const PreparedMix::Slot slot = task.slot(mix_, s);
-    if (!is_line(slot.strategy)) continue;
-    for (int i = 0; i < slot.count; ++i) {
-      const Vec2d u = sampler.light(depth, stream, int(s), i, slot.count);
-      own_lines_.add(choose_line(slot.strategy, task.view, u.x), task.view.point(), task.view.area());
-    }
-  }
+void DirectLight::gather_lines(const Task& task, const PassSampler& sampler, int depth) {
+  choose_lines(task, sampler, depth);
   if (own_lines_.size() == 0) return;
   own_lines_.trace(scene_.geometry, sight_.for_lines(), counters_);
   size_t line = 0;
   for (size_t s = 0; s < mix_.slots(); ++s) {
     const PreparedMix::Slot slot = task.slot(mix_, s);
     if (!is_line(slot.strategy)) continue;
-    for (int i = 0; i < slot.count; ++i, ++line) {
-      if (own_lines_.visible(line).empty()) continue;
-      const Vec2d u = sampler.light(depth, stream, int(s), i, slot.count);
-      const LightPoint at =
-          sample_line(own_lines_.line(line), task.view.x(), own_lines_.visible(line), u.y);
-      push(task, towards(task.view, at), s, Sight::kNoOpaque, line,
-           parameter_of(own_lines_.line(line), at.p));
-    }
+    const bool integrates = this->integrates(slot.strategy);
+    const bool samples = !integrates || !task.view.point().bsdf.only_lambertian();
+    for (const int turn : task.turns)
+      for (int i = 0; i < slot.count; ++i, ++line) {
+        const std::span<const Interval> visible = own_lines_.visible(line);
+        if (visible.empty()) continue;
+        const LightLine& own = own_lines_.line(line);
+        // Alone or in an average: every strategy of the mix has the same weight.
+        if (integrates)
+          integrated_ += closed_form(task.view, own, visible) / float(expected_[s] * double(mix_.slots()));
+        if (!samples) continue;
+        const Vec2d u = numbers(task, s, turn, i, sampler, depth);
+        const LightPoint at = sample_line(own, task.view.x(), visible, u.y);
+        push(task, towards(task.view, at), s, Sight::kNoOpaque, line, parameter_of(own, at.p));
+      }
   }
+}
+
+/// Lines know nothing of alpha-tested meshes: where there are some, points must answer for all of the light.
+bool DirectLight::integrates(const Strategy& strategy) const {
+  return is_analytic(strategy) && !scene_.geometry.has_alpha();
 }
 
 void DirectLight::push(const Task& task, const LightSample& sample, size_t slot, Sight sight, size_t line,
                        double s) {
   if (!(sample.at.pdf > 0)) return;
-  const Rgb f = task.view.point().scatter(sample.wi) * sample.radiance;
+  const ShadingPoint& point = task.view.point();
+  const bool rest = integrates(task.slot(mix_, slot).strategy);
+  const Rgb f =
+      (rest ? point.scatter_beyond_lambertian(sample.wi) : point.scatter(sample.wi)) * sample.radiance;
   if (is_black(f)) return;
   candidates_.push_back({sample, f, slot, line, s, sight});
 }
@@ -242,8 +299,9 @@ bool DirectLight::may_reach(const Task& task) {
   VisibilityWork work;
   for (size_t s = 0; s < mix_.slots(); ++s) {
     const PreparedMix::Slot slot = task.slot(mix_, s);
-    if (is_line(slot.strategy)) work.lines += slot.count;
-    else if (!is_bsdf(slot.strategy)) work.rays += slot.count;
+    const int samples = slot.count * int(task.turns.size());
+    if (is_line(slot.strategy)) work.lines += samples;
+    else if (!is_bsdf(slot.strategy)) work.rays += samples;
   }
   return sight_.look(scene_.geometry, task.view.point(), task.view.area(), task.light, work, counters_);
 }
@@ -284,8 +342,7 @@ Found DirectLight::found(size_t candidate, size_t slot) const {
 
 /// Estimator of one light: Σ over candidates of weight × f / (n p), with n p of the strategy that found
 /// it. Veach & Guibas 1995; design §6.
-Rgb DirectLight::combine(const Task& task) {
-  start_combiner(task);
+Rgb DirectLight::combine() {
   Rgb sum(0);
   for (size_t c = 0; c < candidates_.size(); ++c) {
     const Candidate& candidate = candidates_[c];

@@ -1,5 +1,6 @@
 #pragma once
 // Direct light at a shading point: one loop over all strategies of a mix, whatever they are.
+#include <span>
 #include <vector>
 
 #include "worker/geometry/geometry.h"
@@ -63,28 +64,38 @@ class DirectLight {
     const LightView& view;
     size_t light = 0;       ///< area emitters first, then environments
     double draws = 1;       ///< expected number of times the light is asked
+    /// The draws that fell on it: their samples are some of those of all `draws_in_all` draws, in the pattern
+    /// of `stream`. Empty: only what bsdf met counts.
+    std::span<const int> turns;
+    int draws_in_all = 1;
+    uint32_t stream = 0;
     PreparedMix::Slot slot(const PreparedMix& mix, size_t s) const {
       return view.is_area() ? mix.slot(light, s) : mix.environment_slot(s);
     }
   };
 
   void trace_bsdf(const ShadingPoint& point, const PassSampler& sampler, int depth);
-  Rgb ask(const ShadingPoint& point, size_t light, double draws, bool draw_samples, uint32_t stream,
-          const PassSampler& sampler, int depth);
+  Rgb draw_lights(const ShadingPoint& point, const PassSampler& sampler, int depth);
+  LightView view_of(const ShadingPoint& point, size_t light) const;
+  Rgb ask(const Task& task, const PassSampler& sampler, int depth);
   Rgb delta(const ShadingPoint& point, const DeltaEmitter& emitter);
 
   void gather_bsdf(const Task& task);
-  void gather_points(const Task& task, uint32_t stream, const PassSampler& sampler, int depth);
-  void gather_lines(const Task& task, uint32_t stream, const PassSampler& sampler, int depth);
+  void gather_points(const Task& task, const PassSampler& sampler, int depth);
+  void gather_lines(const Task& task, const PassSampler& sampler, int depth);
+  void choose_lines(const Task& task, const PassSampler& sampler, int depth);
+  /// The two numbers of sample i of a slot's in a turn: which line, and where on it.
+  Vec2d numbers(const Task& task, size_t slot, int turn, int i, const PassSampler& sampler, int depth) const;
   void push(const Task& task, const LightSample& sample, size_t slot, Sight sight, size_t line, double s);
   /// Sets densities_ (row per candidate, as the estimate needs them and as the weights need them) and
   /// drops candidates that nothing reaches.
   void resolve(const Task& task);
   void densities(const Task& task, Candidate& candidate, double* row);
+  bool integrates(const Strategy& strategy) const;
   /// False: no sample of the light can count here.
   bool may_reach(const Task& task);
   bool clear(const Task& task, const LightSample& sample);
-  Rgb combine(const Task& task);
+  Rgb combine();
   void start_combiner(const Task& task);
   Found found(size_t candidate, size_t slot) const;
 
@@ -98,6 +109,9 @@ class DirectLight {
   LineBatch own_lines_, foreign_lines_;
   std::vector<size_t> foreign_;     ///< row per candidate, a handle per slot
   std::vector<double> densities_;   ///< row per candidate, a density per slot
+  Rgb integrated_{0};               ///< by analytic lines, of the light being asked
+  std::vector<DrawnLight> drawn_;
+  std::vector<int> turns_;
   std::vector<double> expected_;    ///< samples per slot
   std::vector<bool> line_slots_;    ///< whether it is a line strategy
   Combiner combiner_;

@@ -8,31 +8,87 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-double luminance(const Rgb& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
-
-/// Emitted power as far as it matters for choosing; a light infinitely far away is spread over the
-/// scene's cross-section (pbrt-v3 §12.5.1).
-double power(const DeltaEmitter& emitter, float reach) {
-  struct Power {
-    double disk;
-    double operator()(const PointEmitter& e) const { return 4 * kPi * luminance(e.intensity); }
-    double operator()(const SpotEmitter& e) const {
-      return 2 * kPi * (1 - 0.5 * (double(e.cos_inner) + e.cos_outer)) * luminance(e.intensity);
-    }
-    double operator()(const DistantEmitter& e) const { return disk * luminance(e.irradiance); }
-  };
-  return std::visit(Power{kPi * reach * reach / 4}, emitter);
-}
-
 }  // namespace
 
 void LightSet::finish(float reach) {
   reach_ = reach;
-  sums_.assign(1, 0);
-  const auto push = [&](double watts) { sums_.push_back(sums_.back() + watts); };
-  for (const AreaEmitter& e : area) push(kPi * penumbra::area(e.shape) * luminance(e.radiance));
-  for (const Environment& e : environments) push(kPi * kPi * reach * reach / 4 * e.mean_luminance());
-  for (const DeltaEmitter& e : delta) push(power(e, reach));
+  near_.clear();
+  far_.clear();
+  place_.assign(size(), 0);
+  if (!draws()) return;
+  std::vector<LightBounds> bounds;
+  const auto place = [&](const LightBounds& b, size_t light) {
+    place_[light] = uint32_t(near_.size());
+    near_.push_back(uint32_t(light));
+    bounds.push_back(b);
+  };
+  for (size_t l = 0; l < area.size(); ++l) place(bounds_of(area[l]), l);
+  for (size_t l = area.size(); l < size(); ++l) {
+    const size_t d = l - area.size() - environments.size();
+    if (is_far(l))
+      far_.push_back(uint32_t(l));
+    else if (const auto* point = std::get_if<PointEmitter>(&delta[d]))
+      place(bounds_of(*point), l);
+    else
+      place(bounds_of(std::get<SpotEmitter>(delta[d])), l);
+  }
+  tree_ = LightTree(bounds);
+}
+
+bool LightSet::is_far(size_t light) const {
+  if (light < area.size()) return false;
+  if (light < area.size() + environments.size()) return true;
+  return std::holds_alternative<DistantEmitter>(delta[light - area.size() - environments.size()]);
+}
+
+double LightSet::far_irradiance(size_t light, const Receiver& receiver) const {
+  if (light < area.size() + environments.size())
+    return kPi * environments[light - area.size()].mean_luminance();
+  const auto& distant = std::get<DistantEmitter>(delta[light - area.size() - environments.size()]);
+  const double cosine = receiver.has_horizon ? receiver.normal.dot(Vec3d(distant.towards_light)) : 1;
+  return luminance(distant.irradiance) * std::max(cosine, 0.0);
+}
+
+double LightSet::far_irradiance(const Receiver& receiver) const {
+  double sum = 0;
+  for (const uint32_t l : far_) sum += far_irradiance(l, receiver);
+  return sum;
+}
+
+double LightSet::share_of_far(double far, const Receiver& receiver) const {
+  const double near = tree_.importance(receiver);
+  if (!(far > 0)) return 0;
+  if (!(near > 0)) return 1;
+  // What the tree says of all its lights together may be wrong by far, most of all amidst them: half of the
+  // share is by the estimates, half is even.
+  return 0.25 + 0.5 * far / (far + near);
+}
+
+DrawnLight LightSet::draw(const Receiver& receiver, double u) const {
+  constexpr double kBelowOne = 1 - 0x1p-53;
+  const double far = far_irradiance(receiver), share = share_of_far(far, receiver);
+  if (!(u < share)) {
+    DrawnLight drawn = tree_.draw(receiver, std::min((u - share) / (1 - share), kBelowOne));
+    if (drawn.probability > 0) drawn.light = near_[drawn.light];
+    drawn.probability *= 1 - share;
+    return drawn;
+  }
+  double rest = u / share * far;
+  DrawnLight drawn;
+  for (const uint32_t l : far_) {
+    const double irradiance = far_irradiance(l, receiver);
+    if (!(irradiance > 0)) continue;
+    drawn = {l, share * irradiance / far};
+    if (rest < irradiance) break;
+    rest -= irradiance;
+  }
+  return drawn;
+}
+
+double LightSet::probability(const Receiver& receiver, size_t light) const {
+  const double far = far_irradiance(receiver), share = share_of_far(far, receiver);
+  if (is_far(light)) return far > 0 ? share * far_irradiance(light, receiver) / far : 0;
+  return (1 - share) * tree_.probability(receiver, place_[light]);
 }
 
 uint32_t LightSet::emitter_at(const PrimitiveId& hit, const Vec3d& p, const Vec3f& direction) const {
@@ -44,16 +100,6 @@ uint32_t LightSet::emitter_at(const PrimitiveId& hit, const Vec3d& p, const Vec3
   for (uint32_t e = front; e < front + sides; ++e)
     if (emission_normal(area[e].shape, p).dot(Vec3d(direction)) < 0) return e;
   return kNone;
-}
-
-size_t LightSet::draw(double u) const {
-  const double target = u * sums_.back();
-  const auto it = std::upper_bound(sums_.begin() + 1, sums_.end(), target);
-  return std::min(size_t(it - sums_.begin()) - 1, size() - 1);
-}
-
-double LightSet::probability(size_t light) const {
-  return (sums_[light + 1] - sums_[light]) / sums_.back();
 }
 
 }  // namespace penumbra

@@ -7,6 +7,7 @@
 #include "worker/effects/environment.h"
 #include "worker/geometry/geometry.h"
 #include "worker/lights/emitter.h"
+#include "worker/lights/light_tree.h"
 
 namespace penumbra {
 
@@ -23,9 +24,9 @@ class LightSet {
 
   /// How the triangles of a mesh map to area emitters.
   struct MeshLights {
-    uint32_t first = kNone;       ///< index into area; kNone: the mesh does not emit
-    bool per_primitive = false;   ///< each triangle is an emitter of its own
-    bool two_sided = false;       ///< then emitters come in pairs: front, back
+    uint32_t first = kNone;      ///< index into area; kNone: the mesh does not emit
+    bool per_primitive = false;  ///< each triangle is an emitter of its own
+    bool two_sided = false;      ///< then emitters come in pairs: front, back
   };
   std::vector<MeshLights> by_mesh;
 
@@ -39,13 +40,23 @@ class LightSet {
 
   size_t size() const { return area.size() + environments.size() + delta.size(); }
   bool draws() const { return size() > size_t(kMostAsked); }
-  /// A light (area first, then environments, then delta) with probability proportional to its power.
-  size_t draw(double u) const;
-  double probability(size_t light) const;
+  /// A light (area first, then environments, then delta) with probability by its estimated contribution: the
+  /// near ones from a tree, those infinitely far away one by one. Only if draws().
+  DrawnLight draw(const Receiver& receiver, double u) const;
+  double probability(const Receiver& receiver, size_t light) const;
 
  private:
+  bool is_far(size_t light) const;
+  /// Irradiance, at most, at the receiver by the far light.
+  double far_irradiance(size_t light, const Receiver& receiver) const;
+  double far_irradiance(const Receiver& receiver) const;
+  /// Probability that a far light is drawn, given the sum of their irradiances.
+  double share_of_far(double far, const Receiver& receiver) const;
+
   float reach_ = 0;
-  std::vector<double> sums_;  ///< running sums of power
+  LightTree tree_;
+  std::vector<uint32_t> near_, far_;  ///< lights, in the tree's order; lights infinitely far away
+  std::vector<uint32_t> place_;       ///< per light: its place in near_
 };
 
 }  // namespace penumbra

@@ -8,9 +8,11 @@ PreparedMix::PreparedMix(const Mix& mix, const LightSet& lights)
     counts_.push_back(s.count);
     environment_.push_back(fit_environment(s));
   }
+  std::vector<StrategyCount> wanted;
+  for (const StrategyCount& s : mix.strategies) wanted.push_back(in_company(s, mix));
   fitted_.reserve(lights.area.size() * mix.strategies.size());
   for (const AreaEmitter& emitter : lights.area)
-    for (const StrategyCount& s : mix.strategies) fitted_.push_back(fit(s, emitter));
+    for (const StrategyCount& s : wanted) fitted_.push_back(fit(s, emitter));
 }
 
 }  // namespace penumbra

@@ -29,6 +29,11 @@ struct ShadingPoint {
   /// Origin of what leaves towards `direction`.
   const Vec3f& origin(const Vec3f& direction) const { return direction.dot(normal) < 0 ? below : above; }
 
+  /// scatter() without Lambert's lobes.
+  Rgb scatter_beyond_lambertian(const Vec3f& wi) const {
+    return bsdf.f_beyond_lambertian(wo, wi) * std::abs(wi.dot(bsdf.ns()));
+  }
+
   /// BSDF × cosine towards wi, sr⁻¹.
   Rgb scatter(const Vec3f& wi) const { return bsdf.f(wo, wi) * std::abs(wi.dot(bsdf.ns())); }
 };

@@ -19,7 +19,7 @@ struct Smoothing {
 };
 
 /// `auto`, as a share of the light's extent in the direction in question; why this one: README.md.
-constexpr double kAutoWidth = 0.25;
+constexpr double kAutoWidth = 1;
 
 /// From 0 at t <= 0 to 1 at t >= 1: 3t² − 2t³, or the ease-in 2t − t².
 double rise(SmoothShape shape, double t);

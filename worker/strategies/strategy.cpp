@@ -34,8 +34,9 @@ Strategy fit_point(const LightShape& shape) {
   return AreaStrategy{};
 }
 
+template <class Lines = LineAreaStrategy>
 Strategy fit_line_area(double radians, const LightShape& shape) {
-  if (has_line_area(shape)) return LineAreaStrategy{radians, ParallelChords(shape, radians)};
+  if (has_line_area(shape)) return Lines{radians, ParallelChords(shape, radians)};
   return fit_point(shape);
 }
 
@@ -61,11 +62,19 @@ Strategy fit(const StrategyCount& wanted, const AreaEmitter& emitter) {
       return fit_line_solid_angle(true, shape);
     case StrategyKind::kLineSolidAngleV:
       return fit_line_solid_angle(false, shape);
+    case StrategyKind::kLineUniform:
+      return fit_line_area<LineUniformStrategy>(wanted.angle_degrees * kDegree, shape);
     case StrategyKind::kLineAnalytic:
-      break;
+      return fit_line_area<LineAnalyticStrategy>(wanted.angle_degrees * kDegree, shape);
   }
-  PENUMBRA_CHECK(!"a strategy that no worker has; the client and the server refuse it");
-  return BsdfStrategy{};
+  PENUMBRA_CHECK(false);
+}
+
+StrategyCount in_company(const StrategyCount& wanted, const Mix& mix) {
+  StrategyCount out = wanted;
+  const bool weighs = mix.strategies.size() > 1 && mix.combination != Combination::kAverage;
+  if (weighs && wanted.kind == StrategyKind::kLineAnalytic) out.kind = StrategyKind::kLineArea;
+  return out;
 }
 
 Strategy fit_environment(const StrategyCount& wanted) {
@@ -82,6 +91,12 @@ std::string name_of(const Strategy& strategy) {
     std::string operator()(const LineAreaStrategy& s) const {
       return fmt::format("line-area@{:g}", s.radians / kDegree);
     }
+    std::string operator()(const LineUniformStrategy& s) const {
+      return fmt::format("line-uniform@{:g}", s.radians / kDegree);
+    }
+    std::string operator()(const LineAnalyticStrategy& s) const {
+      return fmt::format("line-analytic@{:g}", s.radians / kDegree);
+    }
     std::string operator()(const LineSolidAngleStrategy& s) const {
       return s.along_u ? "line-sa@u" : "line-sa@v";
     }
@@ -90,8 +105,17 @@ std::string name_of(const Strategy& strategy) {
 }
 
 bool is_line(const Strategy& strategy) {
-  return std::holds_alternative<LineAreaStrategy>(strategy) ||
-         std::holds_alternative<LineSolidAngleStrategy>(strategy);
+  return std::visit(
+      [](const auto& s) {
+        return requires(const LightView& view) {
+          choose(s, view, 0.0);
+        };
+      },
+      strategy);
+}
+
+bool is_analytic(const Strategy& strategy) {
+  return std::holds_alternative<LineAnalyticStrategy>(strategy);
 }
 
 bool is_bsdf(const Strategy& strategy) {

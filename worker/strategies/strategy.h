@@ -3,6 +3,7 @@
 // variant, its row in fit(), and either sample()/pdf() overloads (points) or choose()/through()
 // overloads (lines). The loop in direct_light.cpp knows none of them by name.
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 
@@ -29,14 +30,30 @@ struct LineAreaStrategy {
   double radians = 0;
   ParallelChords chords;
 };
+/// `line-uniform@DEG`: the same lines, spread evenly across the light.
+struct LineUniformStrategy {
+  double radians = 0;
+  ParallelChords chords;
+};
+/// `line-analytic@DEG`: the same lines; what Lambert's lobes make of one is integrated in closed form
+/// (closed_form()), the rest of the material's from a point on it.
+struct LineAnalyticStrategy {
+  double radians = 0;
+  ParallelChords chords;
+};
 /// `line-sa@u`, `line-sa@v`.
 struct LineSolidAngleStrategy {
   bool along_u = true;
 };
 
-using Strategy = std::variant<BsdfStrategy, AreaStrategy, SolidAngleStrategy, EnvironmentStrategy,
-                              LineAreaStrategy, LineSolidAngleStrategy>;
+using Strategy =
+    std::variant<BsdfStrategy, AreaStrategy, SolidAngleStrategy, EnvironmentStrategy, LineAreaStrategy,
+                 LineUniformStrategy, LineAnalyticStrategy, LineSolidAngleStrategy>;
 
+/// What a mix's strategy is in the company of the others: itself, but for `line-analytic`. A line as a whole
+/// has no density at a point, so weights of a point cannot know it: where they are asked for, it is
+/// `line-area`. It is itself alone and in `/average`.
+StrategyCount in_company(const StrategyCount& wanted, const Mix& mix);
 /// What a mix's strategy becomes on a light of this shape: itself, or the nearest that fits.
 Strategy fit(const StrategyCount& wanted, const AreaEmitter& emitter);
 Strategy fit_environment(const StrategyCount& wanted);
@@ -44,6 +61,8 @@ Strategy fit_environment(const StrategyCount& wanted);
 std::string name_of(const Strategy& strategy);
 bool is_line(const Strategy& strategy);
 bool is_bsdf(const Strategy& strategy);
+/// Does closed_form() give a part of what a line scatters, so that its points are for the rest alone?
+bool is_analytic(const Strategy& strategy);
 
 /// One light as it is seen from one shading point; what strategies share is made once, when first asked.
 class LightView {
@@ -91,8 +110,12 @@ double pdf(const EnvironmentStrategy&, const LightView& view, const LightSample&
 /// The line that a line strategy draws with u in [0,1), or the one that passes through a point.
 /// scale 0: none.
 LightLine choose(const LineAreaStrategy& strategy, const LightView& view, double u);
+LightLine choose(const LineUniformStrategy& strategy, const LightView& view, double u);
+LightLine choose(const LineAnalyticStrategy& strategy, const LightView& view, double u);
 LightLine choose(const LineSolidAngleStrategy& strategy, const LightView& view, double u);
 LightLine through(const LineAreaStrategy& strategy, const LightView& view, const Vec3d& p);
+LightLine through(const LineUniformStrategy& strategy, const LightView& view, const Vec3d& p);
+LightLine through(const LineAnalyticStrategy& strategy, const LightView& view, const Vec3d& p);
 LightLine through(const LineSolidAngleStrategy& strategy, const LightView& view, const Vec3d& p);
 
 // The same, asked through the variant. A strategy of the other kind gives no sample, density 0, no line.
@@ -100,6 +123,10 @@ LightSample sample_point(const Strategy& strategy, const LightView& view, const 
 double density_of(const Strategy& strategy, const LightView& view, const LightSample& at);
 LightLine choose_line(const Strategy& strategy, const LightView& view, double u);
 LightLine line_through(const Strategy& strategy, const LightView& view, const Vec3d& p);
+
+/// What Lambert's lobes at the view's point make of the visible part of a line, divided by the density of the
+/// line's offset: an estimate of the light's part in it, by one random number.
+Rgb closed_form(const LightView& view, const LightLine& line, std::span<const Interval> visible);
 
 /// A point of the view's area light as a sample (direction, radiance).
 LightSample towards(const LightView& view, const LightPoint& at);

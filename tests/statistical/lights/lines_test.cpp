@@ -28,6 +28,9 @@ std::vector<Strategy> strategies(const Case& c, const SeenShape& seen) {
     all.push_back({c.name + ", line-area@" + std::to_string(degrees),
                    [=](double u) { return chords.choose(u); },
                    [=](const Vec3d& p) { return chords.through(p); }});
+    all.push_back({c.name + ", line-uniform@" + std::to_string(degrees),
+                   [=](double u) { return chords.choose_uniform(u); },
+                   [=](const Vec3d& p) { return chords.through_uniform(p); }});
   }
   if (has_line_solid_angle(c.shape))
     for (const bool along_u : {true, false})

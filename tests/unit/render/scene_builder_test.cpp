@@ -73,9 +73,13 @@ TEST(SceneBuilder, SubstitutionsNameShapeCountAndStandIn) {
                       light(R"(Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ] "point P" [ 0 0 0 1 0 0 1 1 0 0 1 0 ])"));
   ASSERT_TRUE(scene);
   const auto said = substitutions(*scene, parse_mix("line-sa@u:1+bsdf:1").value());
-  ASSERT_EQ(said.size(), 2u);
+  ASSERT_EQ(said.size(), 1u);
   EXPECT_EQ(said[0], "line-sa@u on 1 sphere light: sa");
-  EXPECT_EQ(said[1], "line-sa@u on 2 triangle lights: line-area@0");
+  // Weights of a point cannot know a line that is integrated as a whole.
+  const auto weighed = substitutions(*scene, parse_mix("line-analytic@0+bsdf").value());
+  ASSERT_EQ(weighed.size(), 2u);
+  EXPECT_EQ(weighed[1], "line-analytic@0 on 2 triangle lights: line-area@0");
+  EXPECT_EQ(substitutions(*scene, parse_mix("line-analytic@0+line-area@0/average").value()).size(), 2u);
 }
 
 TEST(SceneBuilder, SingularInstancesAreTheScenesFault) {
