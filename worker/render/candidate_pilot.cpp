@@ -18,8 +18,8 @@ constexpr int kBlockWidth = 4, kBlockHeight = 2;
 /// Passes in each pixel. Independent of each other, so that their scatter is the variance of a pass.
 constexpr int kPasses = 4;
 
-// Work in units of about a nanosecond, fitted to times of the kitchen and of op-veach. It orders candidates
-// where clocks may not; no time is ever reported from it.
+// Work in units of about a nanosecond: rough guesses, not a fit. It orders candidates where clocks may not; no time
+// is ever reported from it.
 constexpr double kRayWork = 250, kLineWork = 300, kNodeWork = 6, kTriangleWork = 6, kPassWork = 300;
 
 PixelRect block_at(const PixelRect& tile, int bx, int by) {
