@@ -16,6 +16,8 @@ namespace {
 constexpr int64_t kMostRuns = 1000;
 constexpr const char* kDefaultRuns = "5";
 constexpr const char* kDefaultBudget = "2s";
+// Where neither the command line nor the scene names one.
+constexpr const char* kDefaultMix = "bsdf:1+sa:1";
 
 struct CalibrateOptions {
   JobOptions job;
@@ -66,6 +68,12 @@ absl::StatusOr<Submission> prepare_null(CalibrateOptions& o) {
   ASSIGN_OR_RETURN(Submission submission, prepare(o.job));
   std::vector<Mix>& mixes = submission.spec.mixes;
   mixes.resize(1);
+  // `auto` plans anew in each run: what it costs is no property of the machine.
+  if (mixes[0].automatic && !o.job.mixes.empty())
+    return invalid_input("--mix: auto plans anew in each run; name a mix");
+  if (mixes[0].automatic) {
+    ASSIGN_OR_RETURN(mixes[0], parse_mix(kDefaultMix));
+  }
   mixes.push_back(mixes[0]);
   return submission;
 }

@@ -59,6 +59,15 @@ absl::StatusOr<Prepared> prepare_converge(const ConvergeOptions& o) {
   Prepared prepared;
   ASSIGN_OR_RETURN(prepared.pixel, parse_pixel("--pixel", o.pixel));
   ASSIGN_OR_RETURN(prepared.submission, prepare(o.job));
+  // Where neither the command line nor the scene names mixes: the strategies, alone and together.
+  std::vector<Mix>& mixes = prepared.submission.spec.mixes;
+  if (o.job.mixes.empty() && mixes[0].automatic) {
+    mixes.clear();
+    for (const char* text : {"bsdf:1", "sa:1", "line-sa@u:1", "line-sa@v:1", "bsdf:1+line-sa@v:1"}) {
+      ASSIGN_OR_RETURN(Mix mix, parse_mix(text));
+      mixes.push_back(std::move(mix));
+    }
+  }
   prepared.folder = o.output.out.empty() ? default_folder(o.job.scene) + "-converge" : o.output.out;
   return prepared;
 }

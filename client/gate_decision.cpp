@@ -89,7 +89,7 @@ LogRatio error_ratio(const GateFigures& now, const GateFigures& before) {
   return {sum(*ratio, passes), ""};
 }
 
-LogRatio cpu_ratio(const GateFigures& now, const GateFigures& before, const Estimate& scale) {
+LogRatio cpu_ratio(const GateFigures& now, const GateFigures& before, const Estimate& scale, bool measured) {
   if (!(now.cpu_seconds > 0 && before.cpu_seconds > 0)) return {{}, "no CPU time is recorded"};
   const Estimate per_pass{std::log(now.cpu_seconds / now.passes * before.passes / before.cpu_seconds), 0,
                           std::numeric_limits<double>::infinity()};
@@ -99,6 +99,7 @@ LogRatio cpu_ratio(const GateFigures& now, const GateFigures& before, const Esti
     auto tiles = paired_log_ratio(rescaled(now.tile_seconds, 1), rescaled(before.tile_seconds, 1));
     if (tiles) {
       tiles->value = 0;
+      if (!measured) tiles->standard_error *= std::sqrt(static_cast<double>(now.tile_seconds.size()));
       ratio = sum(ratio, *tiles);
     }
   }

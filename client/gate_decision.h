@@ -51,7 +51,9 @@ struct LogRatio {
 LogRatio error_ratio(const GateFigures& now, const GateFigures& before);
 
 /// CPU seconds per pass in units of a calibration loop, new over old. `scale`: log of (old seconds per unit /
-/// new seconds per unit) with what is known of the noise between runs.
-LogRatio cpu_ratio(const GateFigures& now, const GateFigures& before, const Estimate& scale);
+/// new seconds per unit) with what is known of the noise between runs. Where that was `measured`, the tiles'
+/// scatter is taken as their own and averages out; where it is only assumed, it is taken as the machine's
+/// drift, which does not.
+LogRatio cpu_ratio(const GateFigures& now, const GateFigures& before, const Estimate& scale, bool measured);
 
 }  // namespace penumbra

@@ -13,8 +13,8 @@ namespace penumbra {
 namespace {
 
 // What is assumed of CPU per pass in calibration units between runs, where `calibrate` has not measured it;
-// the calibration loop's own standard error comes on top.
-constexpr double kAssumedCpuLogSd = 0.02;
+// the calibration loop's own standard error and the tiles' scatter come on top.
+constexpr double kAssumedCpuLogSd = 0.015;
 
 struct GateMix {
   std::string label;
@@ -141,7 +141,7 @@ GateRow cpu_row(const GateMix& now, const GateMix& before, const GateRun& run, c
     row.note = "not judged: a run without calibration";
     return row;
   }
-  const LogRatio ratio = cpu_ratio(now.figures, before.figures, *scale);
+  const LogRatio ratio = cpu_ratio(now.figures, before.figures, *scale, options.noise.has_value());
   row.log_ratio = ratio.estimate;
   row.note = ratio.why_not;
   if (run.isas != base.isas) row.note = "not judged: the runs used different vector instruction sets";

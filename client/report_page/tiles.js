@@ -1,15 +1,18 @@
 // Where the time went: every tile of a mix with its passes, CPU seconds, worker and, for `auto`, the mix it planned.
 
-/** One record per (mix, tile): what all its rows (one per worker) come to. */
+/** "mix:rect" -> the fixed mix that `auto` planned there (run.json's auto_plans). */
+const plannedMixes = new Map((run.auto_plans || []).flatMap((plan) => plan.tiles.map((t) => [`${plan.mix}:${t.rect.join()}`, t.mix])));
+
+/** One record per (mix, tile): what all its rows (one per worker) come to; `planned` is null for a fixed mix. */
 const tileRecords = (() => {
   const records = new Map();
   for (const row of run.tiles || []) {
-    const key = `${row.mix}:${row.rect.join(",")}`;
-    const record = records.get(key) || { mix: row.mix, rect: row.rect, passes: 0, cpu_seconds: 0, workers: new Map(), planned: null };
+    const key = `${row.mix}:${row.rect.join()}`;
+    const record = records.get(key)
+      || { mix: row.mix, rect: row.rect, passes: 0, cpu_seconds: 0, workers: new Map(), planned: plannedMixes.get(key) || null };
     record.passes += row.passes;
     record.cpu_seconds += row.cpu_seconds;
     record.workers.set(row.worker, (record.workers.get(row.worker) || 0) + row.cpu_seconds);
-    record.planned = plannedMix(row) || record.planned;
     records.set(key, record);
   }
   for (const r of records.values()) {
@@ -18,11 +21,6 @@ const tileRecords = (() => {
   }
   return [...records.values()];
 })();
-
-/** The fixed mix that `auto` planned for a tile; null for other mixes. */
-function plannedMix(row) {
-  return row.planned_mix || null;
-}
 
 const hostOf = (id) => ((run.workers || []).find((w) => w.id === id) || { host: id }).host;
 const workerName = (id) => `${hostOf(id)} ${id.slice(0, 8)}`;

@@ -56,6 +56,7 @@ CONVERGENCE = {
         ("horizontal lines", "line-sa@u:1", {"A": -2.13, "B": -2.57}),
         ("vertical lines", "line-sa@v:1", {"A": -2.14, "B": -1.61}),
         ("MIS", "bsdf:1+line-sa@u:1", {"A": -1.40, "B": -1.53}),
-        ("MIS smoothed", "bsdf:1+line-sa@u:1/smooth=auto", {"A": -2.04, "B": -1.68}),
+        # The paper does not say its width. In a light of 8 by 4 this one shows the rate within the range of counts.
+        ("MIS smoothed", "bsdf:1+line-sa@u:1/smooth=2", {"A": -2.04, "B": -1.68}),
     ],
 }

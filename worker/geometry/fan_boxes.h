@@ -8,7 +8,9 @@
 // and exact for boxes.
 //
 // The largest c·p over a box is c·(lo+hi)/2 + |c|·(hi-lo)/2: no corner has to be chosen by signs, so every
-// operand of a node stays in its register.
+// operand of a node stays in its register. In units of u |c|₁ reach its roundings are at most: the sum and the
+// extent 1 each, the constant 4, x relative to the centre 1, the direction e 6, four multiply-adds 8; with
+// |c|₁ <= 2 |e| that is 42 of the 64 that the fan's slack allows for.
 #include <algorithm>
 #include <cmath>
 

@@ -90,6 +90,7 @@ class LineWalk {
   void walk(const LineTree& tree, const LineFan& fan, uint32_t* stack_base, uint32_t* leaves, Use use) {
     FanBoxes boxes(fan, tree, visible_.hull());
     uint64_t version = version_;
+    const bool apart = tree.nodes.size() > 1;  // else all of the tree stays at hand
     boxes.skip(visible_.widest_gap());
     uint32_t* stack = stack_base;
     *stack++ = 0;
@@ -104,11 +105,8 @@ class LineWalk {
       const uint32_t met0 = boxes.meeting(node0), met1 = pair ? boxes.meeting(node1) : 0;
       const int found = push(node0, met0, stack, leaves, 0);
       const int all = push(node1, met1, stack, leaves, found);
-      for (const uint32_t* next = stack; next != stack_base && next != stack - 2;) fetch(tree.nodes[*--next]);
+      if (apart) fetch_next(tree, stack_base, stack, {leaves, static_cast<size_t>(all)});
       if (all == 0) continue;
-      if (!tree.blocks.empty()) {
-        for (int i = 0; i < all; ++i) fetch(tree.blocks[leaves[i]]);
-      }
       use(leaves, all, stack, leaves + 2 * kWidth);
       if (version == version_) continue;
       if (visible_.empty()) return;
@@ -118,7 +116,15 @@ class LineWalk {
     }
   }
 
-  /// Asks for all of a node or block, soon to be used: they lie apart, and a query meets most of them cold.
+  /// Asks for what is used next: the blocks found, and the two nodes on top of the stack. A query meets most
+  /// of them cold.
+  static void fetch_next(const LineTree& tree, const uint32_t* stack_base, const uint32_t* stack,
+                         std::span<const uint32_t> leaves) {
+    const auto next = std::min<ptrdiff_t>(2, stack - stack_base);
+    for (ptrdiff_t i = 1; i <= next; ++i) fetch(tree.nodes[stack[-i]]);
+    if (tree.blocks.empty()) return;  // the leaves are instances
+    for (const uint32_t leaf : leaves) fetch(tree.blocks[leaf]);
+  }
   template <class T>
   static void fetch(const T& item) {
     constexpr size_t line = 64;

@@ -42,7 +42,7 @@ ShaftContent enter_shaft(const LineBvh& bvh, LinePath path, const ShaftQuery& qu
                          QueryCounters& counters) {
   shaft.list.clear();
   if (bvh.world.nodes.empty() || path == LinePath::kScalar) return ShaftContent::kMany;
-  shaft.planes = make_shaft_planes(query, bvh.world.reach(Vec3d(query.x)));
+  set_up(shaft.planes, query, bvh.world.reach(Vec3d(query.x)));
   if (!shaft.planes.usable) return ShaftContent::kMany;
   LineQuery light;
   light.light = query.light->light;

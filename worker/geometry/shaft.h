@@ -18,10 +18,14 @@ struct LightPolygon {
                                uint32_t light_primitives);
 
   std::array<Vec3d, 4> corners;  ///< a triangle repeats its last one
-  Vec3d normal;                  ///< unit, emission side; 0 for a light without area
+  Vec3d normal;                  ///< unit, emission side; not finite for a light without area
+  double normal_scale = 0;       ///< 1 / (sum of its components' absolute values)
   double largest = 0;            ///< of all coordinates' absolute values
   PrimitiveId light;
   uint32_t light_primitives = 0;
+
+ private:
+  static LightPolygon of(const std::array<Vec3d, 4>& corners, PrimitiveId light, uint32_t light_primitives);
 };
 
 struct ShaftQuery {

@@ -12,9 +12,8 @@ double norm1(const Vec3d& v) {
   return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
 }
 
-/// Half-space n·q + offset >= 0 with n scaled to |n|₁ = 1, widened by `slack`.
-ShaftFace face_of(const Vec3d& n, double offset, double slack) {
-  const double scale = 1 / norm1(n);
+/// Half-space n·q + offset >= 0, scaled so that |n|₁ = 1, and widened by `slack`.
+ShaftFace face_of(const Vec3d& n, double scale, double offset, double slack) {
   return {Vec3f(n * scale), static_cast<float>(offset * scale + slack)};
 }
 
@@ -24,64 +23,71 @@ constexpr double kThinnestSide = 0x1p-25;
 
 }  // namespace
 
-LightPolygon LightPolygon::quad(const Vec3f& o, const Vec3f& u, const Vec3f& v, PrimitiveId light,
-                                uint32_t light_primitives) {
+LightPolygon LightPolygon::of(const std::array<Vec3d, 4>& corners, PrimitiveId light,
+                              uint32_t light_primitives) {
   LightPolygon polygon;
-  const Vec3d p(o), a(u), b(v);
-  polygon.corners = {p, p + a, p + a + b, p + b};
-  polygon.normal = a.cross(b).normalized();
-  for (const Vec3d& c : polygon.corners)
+  polygon.corners = corners;
+  polygon.normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+  polygon.normal /= polygon.normal.length();
+  polygon.normal_scale = 1 / norm1(polygon.normal);
+  for (const Vec3d& c : corners)
     for (int k = 0; k < 3; ++k) polygon.largest = std::max(polygon.largest, std::abs(c[k]));
   polygon.light = light;
   polygon.light_primitives = light_primitives;
   return polygon;
+}
+
+LightPolygon LightPolygon::quad(const Vec3f& o, const Vec3f& u, const Vec3f& v, PrimitiveId light,
+                                uint32_t light_primitives) {
+  const Vec3d p(o), a(u), b(v);
+  return of({p, p + a, p + a + b, p + b}, light, light_primitives);
 }
 
 LightPolygon LightPolygon::triangle(const Vec3f& p0, const Vec3f& p1, const Vec3f& p2, PrimitiveId light,
                                     uint32_t light_primitives) {
-  LightPolygon polygon;
-  polygon.corners = {Vec3d(p0), Vec3d(p1), Vec3d(p2), Vec3d(p2)};
-  polygon.normal = (Vec3d(p1) - Vec3d(p0)).cross(Vec3d(p2) - Vec3d(p0)).normalized();
-  for (const Vec3d& c : polygon.corners)
-    for (int k = 0; k < 3; ++k) polygon.largest = std::max(polygon.largest, std::abs(c[k]));
-  polygon.light = light;
-  polygon.light_primitives = light_primitives;
-  return polygon;
+  return of({Vec3d(p0), Vec3d(p1), Vec3d(p2), Vec3d(p2)}, light, light_primitives);
 }
 
-ShaftPlanes make_shaft_planes(const ShaftQuery& query, double reach) {
-  ShaftPlanes s;
+void set_up(ShaftPlanes& s, const ShaftQuery& query, double reach) {
   const LightPolygon& light = *query.light;
+  s.usable = false;
+  s.face_count = 0;
   s.x = query.x;
   s.x_exact = Vec3d(query.x);
-  Vec3d sum(0, 0, 0), lo(0, 0, 0), hi(0, 0, 0);
+  for (int i = 0; i < 4; ++i) s.corners[i] = light.corners[i] - s.x_exact;
+  const double height = -(light.normal ^ s.corners[0]);
+  if (!(height > 0)) return;
   double farthest2 = 0;
+  Vec3f lo(0, 0, 0), hi(0, 0, 0), sum(0, 0, 0);
   for (int i = 0; i < 4; ++i) {
-    const Vec3d& a = s.corners[i] = light.corners[i] - s.x_exact;
-    farthest2 = std::max(farthest2, a.length2());
+    farthest2 = std::max(farthest2, s.corners[i].length2());
+    const Vec3f a = s.corners_single[i] = Vec3f(s.corners[i]);
     sum += a;
     for (int k = 0; k < 3; ++k) lo[k] = std::min(lo[k], a[k]), hi[k] = std::max(hi[k], a[k]);
   }
   s.farthest = std::sqrt(farthest2);
-  s.middle = Vec3f(sum * 0.25);
+  s.middle = sum * 0.25f;
   // The ends of chords are rounded to single precision; those of shadow segments lie up to 32 roundings
   // before the light (strategies: end_on_light).
   const double rounding = 36 * kFloatRoundoff * (light.largest + s.farthest);
-  s.height = -(light.normal ^ s.corners[0]) - rounding;
-  if (!(s.height > rounding)) return s;
+  s.height = height - rounding;
+  if (!(s.height > rounding)) return;
   s.slack = 128 * kFloatRoundoff * reach * (s.farthest / s.height) + rounding;
   for (int i = 0; i < 4; ++i) {
-    const Vec3d n = s.corners[(i + 1) % 4].cross(s.corners[i]);
-    if (s.corners[i] == s.corners[(i + 1) % 4]) continue;  // a triangle has no fourth side
-    if (!(norm1(n) > kThinnestSide * farthest2)) return s;
-    s.faces[s.face_count++] = face_of(n, 0, s.slack);
+    const Vec3d &from = s.corners[i], &to = s.corners[(i + 1) % 4];
+    if (from == to) continue;  // a triangle has no fourth side
+    const Vec3d n = to.cross(from);
+    const double size = norm1(n);
+    if (!(size > kThinnestSide * farthest2)) return;
+    s.faces[s.face_count++] = face_of(n, 1 / size, 0, s.slack);
   }
-  s.faces[s.face_count++] = face_of(light.normal, -(light.normal ^ s.corners[0]), s.slack);
-  if (query.horizon != Vec3f(0, 0, 0)) s.faces[s.face_count++] = face_of(Vec3d(query.horizon), 0, s.slack);
-  s.lo = Vec3f(lo) - Vec3f(static_cast<float>(s.slack));
-  s.hi = Vec3f(hi) + Vec3f(static_cast<float>(s.slack));
+  s.faces[s.face_count++] = face_of(light.normal, light.normal_scale, height, s.slack);
+  if (query.horizon != Vec3f(0, 0, 0))
+    s.faces[s.face_count++] = face_of(Vec3d(query.horizon), 1 / norm1(Vec3d(query.horizon)), 0, s.slack);
+  const Vec3f slack(static_cast<float>(s.slack));
+  s.lo = lo - slack;
+  s.hi = hi + slack;
   s.usable = true;
-  return s;
 }
 
 bool ShaftPlanes::plane_clears(const Vec3f p[3]) const {

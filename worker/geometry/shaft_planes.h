@@ -21,12 +21,13 @@ struct ShaftPlanes {
   Vec3f x;
   Vec3d x_exact;
   std::array<Vec3d, 4> corners;  ///< of the light
-  Vec3f middle;                  ///< of the light
-  Vec3f lo, hi;                  ///< bounds of the pyramid, widened
-  double farthest = 0;           ///< distance of the farthest corner
-  double height = 0;             ///< of x over the light's plane, less the rounding of chords' ends
-  double slack = 0;              ///< a triangle farther than this from the pyramid hides nothing
-  bool usable = false;           ///< false: x is behind the light, or too close to its plane to tell
+  std::array<Vec3f, 4> corners_single;
+  Vec3f middle;         ///< of the light
+  Vec3f lo, hi;         ///< bounds of the pyramid, widened
+  double farthest = 0;  ///< distance of the farthest corner
+  double height = 0;    ///< of x over the light's plane, less the rounding of chords' ends
+  double slack = 0;     ///< a triangle farther than this from the pyramid hides nothing
+  bool usable = false;  ///< false: x is behind the light, or too close to its plane to tell
 
   /// The plane of triangle p keeps it clear of the pyramid, though it may be close to x.
   bool plane_clears(const Vec3f p[3]) const;
@@ -35,6 +36,6 @@ struct ShaftPlanes {
 };
 
 /// `reach`: no vertex is farther from x than this.
-ShaftPlanes make_shaft_planes(const ShaftQuery& query, double reach);
+void set_up(ShaftPlanes& planes, const ShaftQuery& query, double reach);
 
 }  // namespace penumbra

@@ -83,7 +83,7 @@ class ShaftBlock {
     const S::Floats plane = S::fma(n[2], q_[0][2], S::fma(n[1], q_[0][1], S::mul(n[0], q_[0][0])));
     S::Floats lowest = plane, highest = plane;
     for (int i = 0; i < 4; ++i) {
-      const Vec3f a(planes_.corners[i]);
+      const Vec3f& a = planes_.corners_single[i];
       const S::Floats at = S::fma(n[2], S::all(a.z), S::fma(n[1], S::all(a.y), S::mul(n[0], S::all(a.x))));
       lowest = i == 0 ? at : S::min(lowest, at);
       highest = i == 0 ? at : S::max(highest, at);

@@ -157,7 +157,8 @@ TaskOutcome render_tile(const Scene& scene, const JobSpec& job, const TileTask& 
   TaskOutcome outcome;
   const auto camera = Camera::build(scene.description, job.width, job.height);
   PENUMBRA_CHECK(camera.ok());  // build_scene() has tried it
-  const Rendering rendering(scene, job, *camera, task);
+  const Rendering rendering{scene,     job,       *camera,
+                            task.kind, task.tile, light_pixels(scene, *camera, task.tile)};
   std::vector<std::unique_ptr<MixRun>> runs;
   for (size_t m = 0; m < job.mixes.size(); ++m) runs.push_back(std::make_unique<MixRun>(rendering, task, m));
 

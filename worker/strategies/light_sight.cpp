@@ -7,7 +7,7 @@ namespace penumbra {
 namespace {
 
 /// Fewer shadow rays than these cost less than a shaft (README: measured).
-constexpr int kLeastRays = 4;
+constexpr int kLeastRays = 16;
 /// After n shafts in a row that held too much to list, the next 2^n points do without: near such a point are
 /// more of its kind. Lines are the same bits either way.
 constexpr int kLongestPause = 6;

@@ -19,6 +19,7 @@ class LineBatch {
   /// Asks for the visible part of everything added; `shaft`, if there is one, answers for what starts above
   /// the surface.
   void trace(const Geometry& geometry, const Shaft* shaft, QueryCounters& counters);
+  void trace(const Geometry& geometry, QueryCounters& counters) { trace(geometry, nullptr, counters); }
 
   const LightLine& line(size_t handle) const { return lines_[handle].line; }
   /// Visible intervals of s in [0,1], ascending.

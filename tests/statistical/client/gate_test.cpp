@@ -12,7 +12,7 @@ namespace penumbra {
 namespace {
 
 constexpr int kPairs = 500;
-constexpr int kEdge = 192, kTile = 64;
+constexpr int kEdge = 144, kTile = 48;
 constexpr int64_t kPasses = 32;
 
 /// What a synthetic estimator does to one pass of a pixel.
@@ -40,7 +40,7 @@ RunRecord empty_run() {
 }
 
 /// Difficulty (variance) over a decade and a half, and noise with tails: one pixel in 200 is a firefly of
-/// three times the spread. relMSE of one run is then sure to 1.4 %, as of an ordinary run of that size.
+/// three times the spread. relMSE of one run is then sure to 1.8 %, as of an ordinary run of that size.
 ErrorFigures render(const Estimator& estimator, std::mt19937& random) {
   FilmImage reference;
   reference.width = reference.height = kEdge;
@@ -72,7 +72,7 @@ Json synthetic_run(const Estimator& estimator, const Machine& machine, std::mt19
     for (int x = 0; x < kEdge; x += kTile) {
       TileRow row{{x, y, x + kTile, y + kTile}, 0, kPasses, 0, "0123", {}};
       row.cpu_seconds =
-          0.1 * (1 + x / 64) * machine.speed * estimator.seconds * mood * log_normal(machine.between_tiles);
+          0.1 * (1 + x / kTile) * machine.speed * estimator.seconds * mood * log_normal(machine.between_tiles);
       row.calibration = {10, 10 * 1e-4 * machine.speed * log_normal(machine.between_tiles / 3)};
       mix.cpu_seconds += row.cpu_seconds;
       mix.calibration += row.calibration;

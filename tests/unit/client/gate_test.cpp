@@ -96,6 +96,19 @@ TEST(GateRuns, MoreCpuIsWorse) {
   EXPECT_EQ(gate(run_json(now), run_json(gated_run()), generous)->verdict, Verdict::kPass);
 }
 
+TEST(CpuRatio, ScatterBetweenTilesIsDriftUnlessTheNoiseWasMeasured) {
+  GateFigures now, before;
+  now.passes = before.passes = 4;
+  now.cpu_seconds = before.cpu_seconds = 40;
+  before.tile_seconds.assign(16, 2.5);
+  for (int t = 0; t < 16; ++t) now.tile_seconds.push_back(2.5 * (t % 2 == 0 ? 1.1 : 0.9));
+  const Estimate known{0, 0.01, INFINITY};
+  const double measured = cpu_ratio(now, before, known, true).estimate->standard_error;
+  const double assumed = cpu_ratio(now, before, known, false).estimate->standard_error;
+  EXPECT_NEAR(measured, std::hypot(0.01, 0.1 / 4), 0.002);
+  EXPECT_NEAR(assumed, std::hypot(0.01, 0.1), 0.005);
+}
+
 TEST(GateRuns, OtherInstructionSetsAreNotJudgedByTheirTime) {
   RunRecord now = gated_run();
   now.summary.workers[0].isa = "avx512";

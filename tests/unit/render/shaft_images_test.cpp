@@ -29,7 +29,7 @@ Shape "trianglemesh" "integer indices" [ 0 1 2 ] "point P" [ -9 1.2 -3  9 1.2 -3
 
 TEST(ShaftImages, AreTheSameBits) {
   const std::vector<std::string> mixes = {
-      "line-sa@v:4",           "bsdf:1+line-sa@v:3",        "sa:4",
+      "line-sa@v:4",           "bsdf:1+line-sa@v:3",        "sa:16",
       "area:2+sa:2",           "sa:2+line-area@30:2",       "line-sa@u:2+line-sa@v:2/average",
       "sa:4+line-sa@u:1/free", "bsdf:1+line-area@0:2/power"};
   const JobSpec spec = test::job(96, 72, mixes, 3);
