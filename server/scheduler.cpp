@@ -137,6 +137,7 @@ void Scheduler::finish(JobRecord& job, JobState state, FailureKind failure, std:
   note(job, std::nullopt, "",
        fmt::format("{}{}{}", name_of(state), job.header.message.empty() ? "" : ": ", job.header.message),
        now);
+  if (state != JobState::kDone) fail_followers(job, now);
 }
 
 void Scheduler::forget(const JobId& id) {
