@@ -146,7 +146,8 @@ TEST(Durability, RepeatedReorderedAndLateMessagesChangeNothing) {
   WorkerState late = empty;
   late.completed = {hand.result_of(leases[0], flat_result(*leases[0].task, 7)),
                     hand.result_of(leases[1], flat_result(*leases[1].task, 7))};
-  for (const WorkerState* told : {&late, &holding, &late, &empty, &holding}) {
+  for (const WorkerState* told :
+       std::initializer_list<const WorkerState*>{&late, &holding, &late, &empty, &holding}) {
     const auto answer = hand.say(*told);
     ASSERT_TRUE(answer.ok()) << answer.status();
     EXPECT_EQ(answer->acknowledged.size(), told->completed.size());
