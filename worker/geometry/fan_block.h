@@ -1,8 +1,8 @@
 #pragma once
 // What sixteen triangles hide of a chord: hidden_by_triangle (line_fan.cpp), lane by lane to the last bit,
 // and the union of such intervals.
-#include "worker/geometry/lanes.h"
 #include "worker/geometry/line_bvh.h"
+#include "worker/geometry/simd.h"
 #include "worker/geometry/visible_set.h"
 
 namespace penumbra {
@@ -17,15 +17,15 @@ struct Doubt {
 
 /// Hidden intervals that wait to be taken from the visible set, of at most kBlocks blocks.
 class HiddenIntervals {
-  using S = Lanes;
+  using S = Simd;
 
  public:
   static constexpr int kBlocks = 2 * kWidth;  // the leaves of two nodes
 
-  void add(uint32_t chosen, S::Floats lo, S::Floats hi) {
+  void add(S::Mask chosen, S::Floats lo, S::Floats hi) {
     S::compress(lo_ + count_, chosen, lo);
     S::compress(hi_ + count_, chosen, hi);
-    count_ += std::popcount(chosen);
+    count_ += std::popcount(S::bits(chosen));
   }
   void add(Interval i) {
     lo_[count_] = i.lo;
@@ -43,11 +43,17 @@ class HiddenIntervals {
   /// Takes all of them from the set, whole connected stretches at a time. True if that changed it.
   bool flush(VisibleSet& visible) {
     bool changed = false;
-    for (int first = 0; first < count_; first += S::kLanes) {
-      const int count = std::min(count_ - first, S::kLanes);
+    int first = 0;
+    while (first < count_) {
+      // Only what meets the visible set counts; what is left of a vector is moved to its front.
+      alignas(64) float lows[kWidth], highs[kWidth];
+      const int count = std::min(count_ - first, kWidth);
       const S::Floats lo = S::load_unaligned(lo_ + first), hi = S::load_unaligned(hi_ + first);
-      const uint32_t meets = ((1u << count) - 1) & visible.meeting(lo, hi);
-      if (meets != 0) changed |= take(visible, first, meets, lo, hi);
+      const S::Mask meets = S::both(S::mask((1u << count) - 1), visible.meeting(lo, hi));
+      S::compress(lows, meets, lo);
+      S::compress(highs, meets, hi);
+      changed |= take(visible, lows, highs, std::popcount(S::bits(meets)));
+      first += count;
     }
     count_ = 0;
     return changed;
@@ -56,64 +62,78 @@ class HiddenIntervals {
  private:
   // Every lane of every block, and the whole vector that a compressed store writes.
   static constexpr int kCapacity = (kBlocks + 1) * kWidth;
-  static constexpr int kDoubts = kBlocks * kWidth / S::kLanes + 1;
 
-  /// Subtracts the connected stretches of a union: of the chosen intervals from `first` on.
-  bool take(VisibleSet& visible, int first, uint32_t chosen, S::Floats lo, S::Floats hi) const {
-    if ((chosen & (chosen - 1)) == 0) {
-      const int only = first + std::countr_zero(chosen);
-      return visible.subtract(lo_[only], hi_[only]);
-    }
+  /// Subtracts the connected stretches of a union of intervals.
+  static bool take(VisibleSet& visible, const float* lows, const float* highs, int count) {
+    if (count < 2) return count == 1 && visible.subtract(lows[0], highs[0]);
+    const S::Mask used = S::mask((1u << count) - 1);
+    const S::Floats lo = S::select(used, S::load(lows), S::all(2)),
+                    hi = S::select(used, S::load(highs), S::all(-1));
     // An end is one of the union's if no other interval holds it and goes on; starts likewise.
     S::Mask inner_end = S::mask(0), inner_start = S::mask(0);
-    for (uint32_t left = chosen; left != 0; left &= left - 1) {
-      const int j = first + std::countr_zero(left);
-      const S::Floats l = S::all(lo_[j]), h = S::all(hi_[j]);
+    for (int j = 0; j < count; ++j) {
+      const S::Floats l = S::all(lows[j]), h = S::all(highs[j]);
       inner_end = S::either(inner_end, S::both(S::less_equal(l, hi), S::less(hi, h)));
       inner_start = S::either(inner_start, S::both(S::less(l, lo), S::less_equal(lo, h)));
     }
-    const uint32_t ends = chosen & ~S::bits(inner_end);
-    uint32_t starts = chosen & ~S::bits(inner_start);
-    if ((ends & (ends - 1)) == 0) {  // mostly it is one stretch
-      return visible.subtract(lo_[first + std::countr_zero(starts)], hi_[first + std::countr_zero(ends)]);
-    }
+    const S::Mask ends = S::without(used, inner_end);
     bool changed = false;
-    for (; starts != 0; starts &= starts - 1) {
-      const float start = lo_[first + std::countr_zero(starts)];
-      const S::Mask later = S::both(S::mask(ends), S::less(S::all(start), hi));
+    for (uint32_t starts = S::bits(S::without(used, inner_start)); starts != 0; starts &= starts - 1) {
+      const float start = lows[std::countr_zero(starts)];
+      const S::Mask later = S::both(ends, S::less(S::all(start), hi));
       changed |= visible.subtract(start, S::lowest(S::select(later, hi, S::all(2))));
     }
     return changed;
   }
 
   int count_ = 0, doubt_count_ = 0;
-  Doubt doubts_[kDoubts];
+  Doubt doubts_[kBlocks + 1];
   alignas(64) float lo_[kCapacity], hi_[kCapacity];
 };
 
 /// The fan's functionals, ready for vectors.
 class FanBlock {
-  using S = Lanes;
+  using S = Simd;
 
  public:
-  explicit FanBlock(const LineFan& fan) : fan_(fan), near_(S::all(-fan.near)), light_(S::all(-fan.light)) {
-    for (int k = 0; k < 3; ++k) {
-      x_[k] = S::all(fan.x[k]);
-      g_[k] = S::all(fan.g[k]);
-      beta_[k] = S::all(fan.beta[k]);
-      t_[k] = S::all(fan.t[k]);
-    }
-  }
+  explicit FanBlock(const LineFan& fan) : fan_(fan) {}
 
   /// Adds what the block hides within [v0,v1], and the lanes that settle() must look at. True if one of the
   /// stretches is wider than `widest`, which it then becomes.
   bool hidden(const TriangleBlock& block, const Excluded& excluded, float v0, float v1, HiddenIntervals& out,
               float& widest) const {
-    bool wider = false;
-    for (int first = 0; first < kWidth && block.uses(first); first += S::kLanes) {
-      wider |= hidden_lanes(block, first, excluded, v0, v1, out, widest);
+    Corner c[3];
+    for (int i = 0; i < 3; ++i) c[i] = corner(block.p[i]);
+    const S::Mask d1 = S::differ(c[0].below, c[1].below), d2 = S::differ(c[0].below, c[2].below);
+    S::Mask cut = S::either(d1, d2);
+    // The odd vertex out is 0 if it differs from both, else the one that differs from 0.
+    const S::Mask odd0 = S::both(d1, d2), odd1 = S::without(d1, d2), odd2 = S::without(d2, d1);
+    const auto pick = [&](auto member) {
+      return Picked{S::select(odd0, c[0].*member, S::select(odd1, c[1].*member, c[2].*member)),
+                    S::select(odd0, c[1].*member, c[0].*member), S::select(odd2, c[1].*member, c[2].*member)};
+    };
+    const Picked g = pick(&Corner::g), beta = pick(&Corner::beta), t = pick(&Corner::t);
+    const Crossings e1 = cross(g.first, beta.first, t.first, g.odd, beta.odd, t.odd);
+    const Crossings e2 = cross(g.second, beta.second, t.second, g.odd, beta.odd, t.odd);
+    S::Floats v1s = S::div(e1.beta, e1.t), v2s = S::div(e2.beta, e2.t);
+    if (excluded.count != 0) cut = S::without(cut, excluded_lanes(block, excluded));
+    // Mostly all cuts lie clearly between x and the light.
+    const S::Floats nearer = S::min(before(fan_.near, e1), before(fan_.near, e2));
+    const S::Floats farther = S::max(before(fan_.light, e1), before(fan_.light, e2));
+    S::Mask clear = S::both(S::less_equal(S::all(0), nearer), S::less(farther, S::all(0)));
+    if (S::bits(S::without(cut, clear)) != 0) {
+      const Place at1 = place(e1), at2 = place(e2);
+      cut = S::without(S::without(cut, S::both(at1.behind, at2.behind)), S::both(at1.beyond, at2.beyond));
+      clear = S::either(clear, decide_behind(e1, at1, e2, at2, v1s, v2s));
+      out.doubt({&block, candidates(S::without(cut, clear), at1, at2, v1s, v2s, v0, v1),
+                 static_cast<uint16_t>(S::bits(odd1)), static_cast<uint16_t>(S::bits(odd2))});
     }
-    return wider;
+    const S::Floats lo = S::max(S::min(v1s, v2s), S::all(v0)), hi = S::min(S::max(v1s, v2s), S::all(v1));
+    cut = S::both(S::both(cut, clear), S::less(lo, hi));
+    out.add(cut, lo, hi);
+    if (S::bits(S::both(cut, S::less(S::all(widest), S::sub(hi, lo)))) == 0) return false;
+    widest = S::highest(S::select(cut, S::sub(hi, lo), S::all(0)));
+    return true;
   }
 
   /// Settles what was left in doubt.
@@ -134,6 +154,10 @@ class FanBlock {
   }
 
  private:
+  struct Corner {
+    S::Floats g, beta, t;
+    S::Mask below;
+  };
   struct Picked {
     S::Floats odd, first, second;
   };
@@ -145,58 +169,14 @@ class FanBlock {
     S::Mask front, behind, beyond, clear;  ///< clear: in front, not beyond
   };
 
-  /// hidden() for the lanes from `first` on.
-  bool hidden_lanes(const TriangleBlock& block, int first, const Excluded& excluded, float v0, float v1,
-                    HiddenIntervals& out, float& widest) const {
-    S::Floats q[3][3], side[3];
-    S::Mask below[3];
-    for (int i = 0; i < 3; ++i) {
-      for (int k = 0; k < 3; ++k) q[i][k] = S::sub(S::load(block.p[i][k] + first), x_[k]);
-      side[i] = dot(g_, q[i]);
-      below[i] = S::less(side[i], S::all(0));
-    }
-    const S::Mask d1 = S::differ(below[0], below[1]), d2 = S::differ(below[0], below[2]);
-    S::Mask cut = S::either(d1, d2);
-    if (excluded.count != 0) {
-      cut = S::without(cut, S::in_range(block.id + first, excluded.first, excluded.count));
-    }
-    if (S::bits(cut) == 0) return false;
-    // The odd vertex out is 0 if it differs from both, else the one that differs from 0.
-    const S::Mask odd0 = S::both(d1, d2), odd1 = S::without(d1, d2), odd2 = S::without(d2, d1);
-    const auto pick = [&](S::Floats c0, S::Floats c1, S::Floats c2) {
-      return Picked{S::select(odd0, c0, S::select(odd1, c1, c2)), S::select(odd0, c1, c0),
-                    S::select(odd2, c1, c2)};
+  Corner corner(const float (&p)[3][kWidth]) const {
+    const S::Floats x = S::sub(S::load(p[0]), S::all(fan_.x.x)), y = S::sub(S::load(p[1]), S::all(fan_.x.y)),
+                    z = S::sub(S::load(p[2]), S::all(fan_.x.z));
+    const auto dot = [&](const Vec3f& n) {
+      return S::fma(S::all(n.z), z, S::fma(S::all(n.y), y, S::mul(S::all(n.x), x)));
     };
-    const Picked g = pick(S::abs(side[0]), S::abs(side[1]), S::abs(side[2]));
-    const Picked t = pick(dot(t_, q[0]), dot(t_, q[1]), dot(t_, q[2]));
-    const Picked beta = pick(dot(beta_, q[0]), dot(beta_, q[1]), dot(beta_, q[2]));
-    const Crossings e1 = cross(g.first, beta.first, t.first, g.odd, beta.odd, t.odd);
-    const Crossings e2 = cross(g.second, beta.second, t.second, g.odd, beta.odd, t.odd);
-    S::Floats v1s = S::div(e1.beta, e1.t), v2s = S::div(e2.beta, e2.t);
-    // Mostly all cuts lie clearly between x and the light.
-    const S::Floats nearer = S::min(S::fma(near_, e1.w, e1.t), S::fma(near_, e2.w, e2.t));
-    const S::Floats farther = S::max(S::fma(light_, e1.w, e1.t), S::fma(light_, e2.w, e2.t));
-    S::Mask clear = S::both(S::less_equal(S::all(0), nearer), S::less(farther, S::all(0)));
-    if (S::bits(S::without(cut, clear)) != 0) {
-      const Place at1 = place(e1), at2 = place(e2);
-      cut = S::without(S::without(cut, S::both(at1.behind, at2.behind)), S::both(at1.beyond, at2.beyond));
-      clear = S::either(clear, decide_behind(e1, at1, e2, at2, v1s, v2s));
-      out.doubt({&block, candidates(S::without(cut, clear), at1, at2, v1s, v2s, v0, v1) << first,
-                 static_cast<uint16_t>(S::bits(odd1) << first),
-                 static_cast<uint16_t>(S::bits(odd2) << first)});
-    }
-    const S::Floats lo = S::max(S::min(v1s, v2s), S::all(v0)), hi = S::min(S::max(v1s, v2s), S::all(v1));
-    const uint32_t hits = S::bits(S::both(S::both(cut, clear), S::less(lo, hi)));
-    if (hits == 0) return false;
-    out.add(hits, lo, hi);
-    const S::Floats width = S::sub(hi, lo);
-    if ((hits & S::bits(S::less(S::all(widest), width))) == 0) return false;
-    widest = S::highest(S::select(S::mask(hits), width, S::all(0)));
-    return true;
-  }
-
-  static S::Floats dot(const S::Floats (&n)[3], const S::Floats (&q)[3]) {
-    return S::fma(n[2], q[2], S::fma(n[1], q[1], S::mul(n[0], q[0])));
+    const S::Floats g = dot(fan_.g);
+    return {S::abs(g), dot(fan_.beta), dot(fan_.t), S::less(g, S::all(0))};
   }
 
   /// Without a fused multiply-add: the same whichever vertex comes first.
@@ -243,8 +223,11 @@ class FanBlock {
     return S::bits(S::without(left, S::without(bounded, meets)));
   }
 
+  static S::Mask excluded_lanes(const TriangleBlock& block, const Excluded& excluded) {
+    return S::in_range(block.id, excluded.first, excluded.count);
+  }
+
   const LineFan& fan_;
-  S::Floats x_[3], g_[3], beta_[3], t_[3], near_, light_;
 };
 
 }  // namespace

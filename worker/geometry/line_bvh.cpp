@@ -193,12 +193,6 @@ absl::Status place_instances(LineBvh& bvh, std::span<const InstanceInput> instan
   return absl::OkStatus();
 }
 
-uint32_t depth_of(const LineBvh& bvh) {
-  uint32_t below = 0;
-  for (const LineTree& tree : bvh.objects) below = std::max(below, tree.depth);
-  return std::max(bvh.world.depth, bvh.instance_tree.depth + below);
-}
-
 size_t bytes_of(const LineTree& tree) {
   return tree.nodes.size() * sizeof(LineNode) + tree.blocks.size() * sizeof(TriangleBlock);
 }
@@ -236,8 +230,13 @@ absl::StatusOr<LineBvh> build_line_bvh(std::span<const MeshInput> meshes,
         build_over(bvh.objects[i], [&](size_t m) { return m >= o.first_mesh && m < o.last_mesh; }));
   }
   RETURN_IF_ERROR(place_instances(bvh, instances, builder));
-  bvh.deepest = depth_of(bvh);
   return bvh;
+}
+
+uint32_t LineBvh::depth() const {
+  uint32_t below = 0;
+  for (const LineTree& tree : objects) below = std::max(below, tree.depth);
+  return std::max(world.depth, instance_tree.depth + below);
 }
 
 size_t LineBvh::bytes() const {

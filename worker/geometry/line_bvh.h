@@ -28,9 +28,7 @@ struct alignas(64) LineNode {
 /// 16 triangles as the scene has them; unused lanes are points, which no plane cuts.
 struct alignas(64) TriangleBlock {
   float p[3][3][kWidth];  ///< [vertex][axis]
-  uint32_t id[kWidth];    ///< index of the triangle in LineBvh::first_triangle's numbering; unused: of lane 0
-  /// Lanes are filled from the first on.
-  bool uses(int lane) const { return lane == 0 || id[lane] != id[0]; }
+  uint32_t id[kWidth];    ///< index of the triangle in LineBvh::first_triangle's numbering
 };
 
 /// A tree in its own coordinates: of the world's meshes, of one object's, or of the instances.
@@ -59,10 +57,9 @@ struct LineBvh {
   LineTree instance_tree;  ///< leaves are single instances
   std::vector<LineInstance> instances;
   std::vector<uint32_t> first_triangle;  ///< of each mesh, in a numbering of all meshes' triangles
-  uint32_t deepest = 0;                  ///< see depth()
 
   /// Nodes on the longest path, through instances as well.
-  uint32_t depth() const { return deepest; }
+  uint32_t depth() const;
   size_t bytes() const;
   size_t triangles() const;
 };

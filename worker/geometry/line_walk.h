@@ -58,39 +58,35 @@ class LineWalk {
     const FanBlock fan_block(fan);
     const bool world = &tree == &bvh_.world;
     if (world && workspace_.occluder_tree == bvh_.id) {
-      test(fan_block, tree, {&workspace_.occluder, 1}, excluded);
+      test(fan_block, tree, {&workspace_.occluder, 1}, excluded, visible_.hull());
       if (visible_.empty()) return;
     }
     walk(tree, fan, stack_base, leaves_base, [&](const uint32_t* found, int count, uint32_t*, uint32_t*) {
-      test(fan_block, tree, {found, static_cast<size_t>(count)}, excluded);
+      test(fan_block, tree, {found, static_cast<size_t>(count)}, excluded, visible_.hull());
     });
   }
 
   /// Takes from the visible set what some blocks hide of it.
   void test(const FanBlock& fan_block, const LineTree& tree, std::span<const uint32_t> blocks,
-            const Excluded& excluded) {
+            const Excluded& excluded, Interval hull) {
     for (const uint32_t block : blocks) {
-      const Interval hull = visible_.hull();
       if (fan_block.hidden(tree.blocks[block], excluded, hull.lo, hull.hi, hidden_, widest_)) {
         occluder_ = block;
         occluder_world_ = &tree == &bvh_.world;
       }
-      counters_.triangles_tested += kWidth;
-      fan_block.settle(hidden_, hull.lo, hull.hi);
-      // Block by block: one is mostly cut in one connected stretch, and the next has less left to look at.
-      if (hidden_.empty() || !hidden_.flush(visible_)) continue;
-      ++version_;
-      if (visible_.empty()) return;
     }
+    counters_.triangles_tested += kWidth * blocks.size();
+    fan_block.settle(hidden_, hull.lo, hull.hi);
+    if (!hidden_.empty() && hidden_.flush(visible_)) ++version_;
   }
 
   /// Visits the leaves that the visible part of the fan meets. `use` may narrow it, and gets the free parts
   /// of the two buffers for a walk of its own.
   template <class Use>
   void walk(const LineTree& tree, const LineFan& fan, uint32_t* stack_base, uint32_t* leaves, Use use) {
-    FanBoxes boxes(fan, tree, visible_.hull());
+    FanBoxes boxes(fan, tree);
     uint64_t version = version_;
-    const bool apart = tree.nodes.size() > 1;  // else all of the tree stays at hand
+    boxes.narrow(visible_.hull());
     boxes.skip(visible_.widest_gap());
     uint32_t* stack = stack_base;
     *stack++ = 0;
@@ -105,7 +101,6 @@ class LineWalk {
       const uint32_t met0 = boxes.meeting(node0), met1 = pair ? boxes.meeting(node1) : 0;
       const int found = push(node0, met0, stack, leaves, 0);
       const int all = push(node1, met1, stack, leaves, found);
-      if (apart) fetch_next(tree, stack_base, stack, {leaves, static_cast<size_t>(all)});
       if (all == 0) continue;
       use(leaves, all, stack, leaves + 2 * kWidth);
       if (version == version_) continue;
@@ -116,32 +111,12 @@ class LineWalk {
     }
   }
 
-  /// Asks for what is used next: the blocks found, and the two nodes on top of the stack. A query meets most
-  /// of them cold.
-  static void fetch_next(const LineTree& tree, const uint32_t* stack_base, const uint32_t* stack,
-                         std::span<const uint32_t> leaves) {
-    const auto next = std::min<ptrdiff_t>(2, stack - stack_base);
-    for (ptrdiff_t i = 1; i <= next; ++i) fetch(tree.nodes[stack[-i]]);
-    if (tree.blocks.empty()) return;  // the leaves are instances
-    for (const uint32_t leaf : leaves) fetch(tree.blocks[leaf]);
-  }
-  template <class T>
-  static void fetch(const T& item) {
-    constexpr size_t line = 64;
-    const char* bytes = reinterpret_cast<const char*>(&item);
-    for (size_t at = 0; at < sizeof(T); at += line) _mm_prefetch(bytes + at, _MM_HINT_T0);
-  }
-
   /// Inner nodes go on the stack, leaves behind the `found` ones; returns how many of these there are.
   static int push(const LineNode& node, uint32_t met, uint32_t*& stack, uint32_t* leaves, int found) {
-    for (; met != 0; met &= met - 1) {
-      const int lane = std::countr_zero(met);
-      const uint32_t leaf = node.leaves >> lane & 1;
-      *stack = leaves[found] = node.child[lane];
-      stack += 1 - leaf;
-      found += static_cast<int>(leaf);
-    }
-    return found;
+    Simd::compress(stack, met & ~node.leaves, node.child);
+    stack += std::popcount(met & ~node.leaves);
+    Simd::compress(leaves + found, met & node.leaves, node.child);
+    return found + std::popcount(met & node.leaves);
   }
 
   const LineBvh& bvh_;

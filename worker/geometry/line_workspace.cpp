@@ -13,7 +13,7 @@ LineWorkspace& line_workspace(uint32_t depth) {
   // walks (instances) hold leaves of two nodes each. A whole vector may be written past the end.
   const size_t room = (2 * size_t{depth} + 2) * kWidth;
   if (workspace.stack.size() < room) workspace.stack.resize(room);
-  if (workspace.leaves.empty()) workspace.leaves.resize(5 * kWidth);
+  workspace.leaves.resize(5 * kWidth);
   if (workspace.lo.empty()) workspace.grow_set();
   return workspace;
 }

@@ -34,7 +34,7 @@ void ShaftList::finish() {
   for (int lane = count_ % kWidth; lane < kWidth; ++lane) {
     for (int c = 0; c < 3; ++c)
       for (int k = 0; k < 3; ++k) last.p[c][k][lane] = 0;
-    last.id[lane] = last.id[0];  // unused (TriangleBlock::uses)
+    last.id[lane] = kNone;
   }
 }
 

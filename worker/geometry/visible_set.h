@@ -3,14 +3,14 @@
 // triangle's interval, taken by comparisons only, so the final set does not depend on the order.
 #include <algorithm>
 
-#include "worker/geometry/lanes.h"
 #include "worker/geometry/line_workspace.h"
+#include "worker/geometry/simd.h"
 
 namespace penumbra {
 namespace {
 
 class VisibleSet {
-  using S = Lanes;
+  using S = Simd;
 
  public:
   explicit VisibleSet(LineWorkspace& workspace)
@@ -28,14 +28,14 @@ class VisibleSet {
   Interval hull() const { return {lo_[0], hi_[count_ - 1]}; }
 
   /// Intervals of which some part may be visible. Exact for the few intervals that there mostly are.
-  uint32_t meeting(S::Floats lo, S::Floats hi) const {
+  S::Mask meeting(S::Floats lo, S::Floats hi) const {
     constexpr int kFew = 8;
-    if (count_ > kFew) return (1u << S::kLanes) - 1;
+    if (count_ > kFew) return S::mask(0xffff);
     S::Mask met = S::mask(0);
     for (int i = 0; i < count_; ++i) {
       met = S::either(met, S::both(S::less(lo, S::all(hi_[i])), S::less(S::all(lo_[i]), hi)));
     }
-    return S::bits(met);
+    return met;
   }
 
   /// Removes [lo,hi], lo < hi. True if anything went.
@@ -68,11 +68,9 @@ class VisibleSet {
  private:
   void erase(int first, int last) {
     if (first == last) return;
-    for (; last < count_; ++first, ++last) {  // few: a call of memmove costs more
-      lo_[first] = lo_[last];
-      hi_[first] = hi_[last];
-    }
-    count_ = first;
+    std::copy(lo_ + last, lo_ + count_, lo_ + first);
+    std::copy(hi_ + last, hi_ + count_, hi_ + first);
+    count_ -= last - first;
   }
 
   void split(int i, float lo, float hi) {
@@ -81,12 +79,11 @@ class VisibleSet {
       lo_ = workspace_.lo.data();
       hi_ = workspace_.hi.data();
     }
-    for (int k = count_++; k > i; --k) {
-      lo_[k] = lo_[k - 1];
-      hi_[k] = hi_[k - 1];
-    }
+    std::copy_backward(lo_ + i + 1, lo_ + count_, lo_ + count_ + 1);
+    std::copy_backward(hi_ + i, hi_ + count_, hi_ + count_ + 1);
     hi_[i] = lo;
     lo_[i + 1] = hi;
+    ++count_;
   }
 
   LineWorkspace& workspace_;
