@@ -118,6 +118,10 @@ absl::Status BlobWriter::append(std::string_view bytes) {
   return absl::OkStatus();
 }
 
+void BlobWriter::discard() {
+  ::unlink(path_.c_str());
+}
+
 absl::Status BlobWriter::finish(bool flush) {
   if (written_ != size_)
     return invalid_input("blob {}: {} bytes came, {} were announced", digest_, written_, size_);

@@ -33,6 +33,8 @@ class BlobWriter {
   /// Verifies, makes durable (unless BlobFolder::sync() will), renames. InvalidArgument if size or digest
   /// do not fit: bytes with another digest are thrown away.
   absl::Status finish(bool flush = true);
+  /// Forgets what has been written: the next writer begins anew.
+  void discard();
 
  private:
   friend class BlobFolder;

@@ -54,6 +54,8 @@ absl::Status BlobClient::download(const Digest& digest, uint64_t size, const Blo
   if (!status.ok()) context.TryCancel();
   const absl::Status received = from_grpc(reader->Finish());
   RETURN_IF_ERROR(status);
+  // The server has found its own bytes bad: those that came are not worth going on from.
+  if (absl::IsDataLoss(received)) writer->discard();
   RETURN_IF_ERROR(received);
   const absl::Status finished = writer->finish();
   return absl::IsInvalidArgument(finished) ? sent_corrupt(finished) : finished;

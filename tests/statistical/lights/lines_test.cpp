@@ -184,6 +184,9 @@ TEST(LineStrategies, UnhiddenLinesCoverTheLightAsThePointsDo) {
     const SeenShape seen(c.shape, c.x);
     for (const Strategy& strategy : strategies(c, seen)) {
       const bool angular = strategy.name.find("line-sa") != std::string::npos;
+      // Offsets without regard to the chords' lengths crowd points on short chords: even on rectangles along their
+      // edges only.
+      if (strategy.name.find("line-uniform") != std::string::npos) continue;
       std::vector<int> hits(kCells * kCells);
       for (int i = 0; i < kSamples; ++i) {
         const Vec2d r = random_square(13, i);
