@@ -226,7 +226,7 @@ INSTANTIATE_TEST_SUITE_P(
                          2},
                     Case{"kitchen/kitchen-play.pbrt", "kitchen", 640, 360, 4, 4,
                          {"bsdf:2+sa:2", "bsdf:2+line-sa@v:2"},
-                         4}),
+                         8}),
     [](const auto& each) {
       std::string name = each.param.reference;
       std::replace(name.begin(), name.end(), '-', '_');
