@@ -23,8 +23,7 @@ struct Rendering {
 };
 
 /// Camera rays of a pass for the emission of a pixel that may see a light. Its variance falls with their number,
-/// and such a pixel has little else to pay for: at sixteen the outline of cornell-box's light no longer leads
-/// the image's error, and costs below 2 % of a pass.
+/// and such a pixel has little else to pay for.
 constexpr int kEmissionRays = 16;
 
 /// Probes look at pixel centres.
