@@ -72,6 +72,7 @@ struct Case {
   int grid;          ///< camera samples per pixel and axis of the reference
   std::vector<std::string> mixes;
   int64_t passes;
+  std::vector<size_t> leaks = {};  ///< blocks in which the reference lets camera rays through a surface
 };
 
 /// Mean of a block's pixels and its variance; pixels share no samples.
@@ -156,12 +157,15 @@ TEST_P(Reference, BlocksAgree) {
     spec.camera_grid = c.grid;
     const test::Rendered rendered = test::render(*scene, spec, kGroup);
     std::vector<double> a, b, variance;
+    std::vector<size_t> compared;  // the block of each three values
     double sum = 0, reference_sum = 0;
     std::vector<Block> ours;
     for (const PixelRect& rect : grid) ours.push_back(block_of(rendered.images[0], rect));
     floor_variances(ours, reference);
     for (size_t i = 0; i < grid.size(); ++i) {
+      if (std::find(c.leaks.begin(), c.leaks.end(), i) != c.leaks.end()) continue;
       const Block& block = ours[i];
+      compared.push_back(i);
       for (int k = 0; k < 3; ++k) {
         a.push_back(block.mean[k]);
         b.push_back(reference[i].mean[k]);
@@ -175,11 +179,17 @@ TEST_P(Reference, BlocksAgree) {
                 100 * (sum / reference_sum - 1), z.largest, z.threshold, rendered.costs[0].cpu_seconds,
                 double(rendered.costs[0].rays) * 1e-6, double(rendered.costs[0].line_queries) * 1e-6);
     EXPECT_TRUE(z.passes()) << mix << ": " << z.rejected << " of " << z.compared << " rejected, worst block "
-                            << z.worst / 3 << " |z| " << z.largest << " ours " << a[size_t(z.worst)] << " reference "
+                            << compared[size_t(z.worst / 3)] << " |z| " << z.largest << " ours " << a[size_t(z.worst)] << " reference "
                             << b[size_t(z.worst)] << " +- " << std::sqrt(variance[size_t(z.worst)]);
     EXPECT_EQ(rendered.costs[0].non_finite, 0u);
   }
 }
+
+// The diagonal between the back wall's two triangles is the picture's second diagonal, and the reference's grid has
+// points on it, eight a pixel. Some of its rays there meet neither triangle: over the pixels with x + y = 255 and x from
+// 128 to 209 the reference is darker than ours by 0.0016 to 0.036 in red (mean of a block's 16 such pixels, 512 passes),
+// on the diagonals beside it and on the rest of this one by at most 0.0009 either way. These six blocks hold them.
+const std::vector<size_t> kBackWallLeaks = {2 * 16 + 13, 3 * 16 + 12, 4 * 16 + 11, 5 * 16 + 10, 6 * 16 + 9, 7 * 16 + 8};
 
 // On glossy surfaces only mixes with bsdf are listed, and never bsdf alone: what is left out finds the highlights or
 // the light by events so rare that a block's own variance says nothing with this many samples.
@@ -189,7 +199,8 @@ INSTANTIATE_TEST_SUITE_P(
                          {"bsdf:4", "area:1", "sa:1", "line-area@0:1", "line-area@90:1", "line-area@37:1", "line-sa@u:1",
                           "line-sa@v:1", "bsdf:1+sa:1", "bsdf:1+line-sa@u:1", "line-area@0:1+line-area@90:1",
                           "line-area@0:1+line-area@90:1/average", "bsdf:1+line-sa@v:1/free", "sa:1+line-sa@u:1/power"},
-                         128},
+                         128,
+                         kBackWallLeaks},
                     Case{"op-veach/op-veach-color.pbrt", "op-veach", 384, 256, 8,
                          {"bsdf:1+sa:1", "bsdf:1+line-sa@u:1", "bsdf:1+line-sa@v:1", "bsdf:1+line-area@30:1",
                           "bsdf:2+line-sa@v:2/free"},
