@@ -62,10 +62,10 @@ absl::StatusOr<std::string> LocalCluster::program(const std::string& name) const
 absl::Status LocalCluster::start_server() {
   ASSIGN_OR_RETURN(const std::string program, this->program("penumbra-server"));
   const fs::path folder = folder_, announced = folder / "address";
-  ASSIGN_OR_RETURN(ChildProcess server, ChildProcess::start(program,
-                                                            {"--listen", "127.0.0.1:0", "--store",
-                                                             folder / "store", "--address-file", announced},
-                                                            folder / "server.log"));
+  std::vector<std::string> arguments = {"--listen", "127.0.0.1:0", "--store", folder / "store", "--address-file",
+                                        announced};
+  if (programs_.empty()) arguments.push_back("--ephemeral");  // another build may be too old to know it
+  ASSIGN_OR_RETURN(ChildProcess server, ChildProcess::start(program, arguments, folder / "server.log"));
   server_.push_back(std::move(server));
   // The file appears whole (renamed) once the server listens.
   const auto end = std::chrono::steady_clock::now() + kServerStart;
@@ -83,10 +83,11 @@ absl::Status LocalCluster::start_server() {
 absl::Status LocalCluster::start_worker(size_t index) {
   ASSIGN_OR_RETURN(const std::string program, this->program("penumbra-worker"));
   const fs::path folder = folder_;
+  // The server's own blobs are the workers' cache: nothing is copied from one folder of this machine to another.
   ASSIGN_OR_RETURN(ChildProcess worker,
                    ChildProcess::start(program,
                                        {"--server", address_, "--threads", fmt::format("{}", size_.threads),
-                                        "--cache", folder / "cache"},
+                                        "--cache", folder / "store" / "blobs"},
                                        folder / fmt::format("worker-{}.log", index + 1)));
   if (index == workers_.size()) {
     workers_.push_back(std::move(worker));

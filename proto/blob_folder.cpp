@@ -129,12 +129,13 @@ absl::Status BlobWriter::finish(bool flush) {
     ::unlink(path_.c_str());
     return invalid_input("blob {}: its bytes have the digest {}", digest_, found);
   }
+  flush = flush && durability_ == Durability::kPowerLoss;
   if (flush && ::fsync(file_) != 0) return system_error("flushing", path_);
   RETURN_IF_ERROR(rename_to(path_, target_));
   return flush ? sync_path(fs::path(target_).parent_path()) : absl::OkStatus();
 }
 
-absl::StatusOr<BlobFolder> BlobFolder::open(const std::string& root) {
+absl::StatusOr<BlobFolder> BlobFolder::open(const std::string& root, Durability durability) {
   std::error_code error;
   fs::create_directories(root + "/partial", error);
   if (error) return invalid_input("{}: {}", root, error.message());
@@ -143,8 +144,8 @@ absl::StatusOr<BlobFolder> BlobFolder::open(const std::string& root) {
   // All folders at once, so that storing a blob makes no new one whose parent would have to be flushed.
   for (int prefix = 0; prefix < 256; ++prefix)
     fs::create_directory(fmt::format("{}/{:02x}", root, prefix), error);
-  RETURN_IF_ERROR(sync_path(root));
-  return BlobFolder(root);
+  if (durability == Durability::kPowerLoss) RETURN_IF_ERROR(sync_path(root));
+  return BlobFolder(root, durability);
 }
 
 std::string BlobFolder::path_of(const Digest& digest) const {
@@ -252,6 +253,7 @@ absl::Status BlobFolder::put(const Digest& digest, std::string_view bytes) const
 }
 
 absl::Status BlobFolder::sync(const std::vector<Digest>& digests) const {
+  if (durability_ == Durability::kProcessEnd) return absl::OkStatus();
   std::set<std::string> folders;
   for (const Digest& digest : digests) {
     const std::string path = path_of(digest);
@@ -280,7 +282,7 @@ absl::StatusOr<std::unique_ptr<BlobWriter>> BlobFolder::write(const Digest& dige
     return make_status(absl::StatusCode::kFailedPrecondition, "blob {}: offset {} of {} bytes kept", digest,
                        offset, mine.st_size);
   if (::ftruncate(file.get(), static_cast<off_t>(offset)) != 0) return system_error("truncating", path);
-  std::unique_ptr<BlobWriter> writer(new BlobWriter(path, path_of(digest), digest, file.get(), size));
+  std::unique_ptr<BlobWriter> writer(new BlobWriter(path, path_of(digest), digest, file.get(), size, durability_));
   const int descriptor = file.release();
   RETURN_IF_ERROR(
       read_pieces(descriptor, offset, path, [&](std::string_view piece) { writer->hash_.add(piece); }));

@@ -20,6 +20,9 @@ namespace penumbra {
 /// 64 lower-case hexadecimal digits.
 bool is_digest(std::string_view text);
 
+/// What stored bytes survive: the end of every process and the loss of power (flushed to disk), or the former alone.
+enum class Durability { kPowerLoss, kProcessEnd };
+
 /// Bytes on their way into a folder. If it is destroyed before finish(), what was written stays and can be
 /// gone on with.
 class BlobWriter {
@@ -30,7 +33,7 @@ class BlobWriter {
 
   /// InvalidArgument beyond the announced size; ResourceExhausted if the disk is full.
   absl::Status append(std::string_view bytes);
-  /// Verifies, makes durable (unless BlobFolder::sync() will), renames. InvalidArgument if size or digest
+  /// Verifies, makes durable (unless BlobFolder::sync() will, or the folder's durability asks for no flush), renames. InvalidArgument if size or digest
   /// do not fit: bytes with another digest are thrown away.
   absl::Status finish(bool flush = true);
   /// Forgets what has been written: the next writer begins anew.
@@ -38,17 +41,19 @@ class BlobWriter {
 
  private:
   friend class BlobFolder;
-  BlobWriter(std::string path, std::string target, Digest digest, int file, uint64_t size)
+  BlobWriter(std::string path, std::string target, Digest digest, int file, uint64_t size, Durability durability)
       : path_(std::move(path)),
         target_(std::move(target)),
         digest_(std::move(digest)),
         file_(file),
-        size_(size) {}
+        size_(size),
+        durability_(durability) {}
 
   std::string path_, target_;
   Digest digest_;
   int file_;  ///< open and locked as long as the writer lives
   uint64_t size_, written_ = 0;
+  Durability durability_;
   Sha256 hash_;
 };
 
@@ -63,7 +68,7 @@ struct BlobFile {
 class BlobFolder {
  public:
   /// Makes the folder if need be; unfinished files that nobody has touched for a day go.
-  static absl::StatusOr<BlobFolder> open(const std::string& root);
+  static absl::StatusOr<BlobFolder> open(const std::string& root, Durability durability = Durability::kPowerLoss);
 
   const std::string& root() const { return root_; }
   /// Requires is_digest(digest): no other name ever reaches the disk.
@@ -93,7 +98,7 @@ class BlobFolder {
 
   /// Stores bytes; harmless if they are there. Durable only after sync().
   absl::Status put(const Digest& digest, std::string_view bytes) const;
-  /// Bytes and names of these blobs are on disk when this returns.
+  /// Bytes and names of these blobs are as durable as the folder's durability says when this returns.
   absl::Status sync(const std::vector<Digest>& digests) const;
 
   /// A writer from `offset` on. FailedPrecondition if that is beyond what is kept (0 starts anew); Aborted
@@ -102,10 +107,11 @@ class BlobFolder {
                                                     uint64_t offset) const;
 
  private:
-  explicit BlobFolder(std::string root) : root_(std::move(root)) {}
+  BlobFolder(std::string root, Durability durability) : root_(std::move(root)), durability_(durability) {}
   std::string partial_path(const Digest& digest) const;
 
   std::string root_;
+  Durability durability_;
 };
 
 }  // namespace penumbra

@@ -30,6 +30,7 @@ struct Options {
   std::string store;
   std::string address_file;
   std::string log_level = "info";
+  bool ephemeral = false;
   BlobLimits blobs;
   SchedulerLimits scheduler;
   RetentionLimits retention;
@@ -58,6 +59,8 @@ void add_flags(CLI::App& app, Options& options) {
       ->capture_default_str();
   app.add_option("--store", options.store, "folder for jobs, scenes and results; a restart continues from it")
       ->required();
+  app.add_flag("--ephemeral", options.ephemeral,
+               "flush nothing to disk: for a store that need not survive the loss of power");
   app.add_option("--address-file", options.address_file, "file to write the bound HOST:PORT to");
   app.add_option("--tls-cert", options.listen.credentials.cert, "server certificate, PEM");
   app.add_option("--tls-key", options.listen.credentials.key, "its private key, PEM");
@@ -116,8 +119,9 @@ absl::Status serve(Options options) {
   }
   for (const TokenEntry& entry : options.listen.tokens) options.scheduler.quotas[entry.user] = entry.quota;
   ASSIGN_OR_RETURN(const StoreFolder folder, StoreFolder::open(options.store));
-  ASSIGN_OR_RETURN(std::unique_ptr<JobStore> store, open_sqlite_store(folder.database()));
-  ASSIGN_OR_RETURN(BlobFolder blobs, BlobFolder::open(folder.blobs()));
+  const Durability durability = options.ephemeral ? Durability::kProcessEnd : Durability::kPowerLoss;
+  ASSIGN_OR_RETURN(std::unique_ptr<JobStore> store, open_sqlite_store(folder.database(), durability));
+  ASSIGN_OR_RETURN(BlobFolder blobs, BlobFolder::open(folder.blobs(), durability));
   Coordinator coordinator(std::move(store), std::move(blobs), options.scheduler, now);
   RETURN_IF_ERROR(coordinator.start());
 

@@ -187,9 +187,10 @@ class SqliteStore final : public JobStore {
   std::unique_ptr<Statement> drop_job_[std::size(kOfJobs)];
 };
 
-absl::Status make_schema(sqlite3* db) {
+absl::Status make_schema(sqlite3* db, Durability durability) {
   RETURN_IF_ERROR(execute(db, "PRAGMA journal_mode = WAL"));
-  RETURN_IF_ERROR(execute(db, "PRAGMA synchronous = FULL"));
+  RETURN_IF_ERROR(execute(db, durability == Durability::kPowerLoss ? "PRAGMA synchronous = FULL"
+                                                                   : "PRAGMA synchronous = OFF"));
   ASSIGN_OR_RETURN(Statement version, Statement::prepare(db, "PRAGMA user_version"));
   ASSIGN_OR_RETURN(const bool row, version.step());
   const uint64_t found = row ? version.number(0) : 0;
@@ -208,12 +209,12 @@ absl::Status make_schema(sqlite3* db) {
 
 }  // namespace
 
-absl::StatusOr<std::unique_ptr<JobStore>> open_sqlite_store(const std::string& path) {
+absl::StatusOr<std::unique_ptr<JobStore>> open_sqlite_store(const std::string& path, Durability durability) {
   sqlite3* raw = nullptr;
   const int code = sqlite3_open_v2(path.c_str(), &raw, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
   Database db(raw);
   if (code != SQLITE_OK) return invalid_input("{}: {}", path, sqlite3_errstr(code));
-  if (const absl::Status status = make_schema(db.get()); !status.ok())
+  if (const absl::Status status = make_schema(db.get(), durability); !status.ok())
     return invalid_input("{}: {}", path, message_of(status));
   auto store = std::make_unique<SqliteStore>(std::move(db));
   RETURN_IF_ERROR(store->prepare());

@@ -31,6 +31,11 @@ struct TriangleList {
   std::vector<Item> items;
   std::vector<Box> boxes;
 
+  void reserve(size_t triangles) {
+    items.reserve(triangles);
+    boxes.reserve(triangles);
+  }
+
   void add(const TriangleMesh& mesh, uint32_t first_id) {
     for (uint32_t i = 0; i < mesh.triangles(); ++i) {
       Box box = empty_box();
@@ -216,6 +221,11 @@ absl::StatusOr<LineBvh> build_line_bvh(std::span<const MeshInput> meshes,
   }
   const auto build_over = [&](LineTree& tree, auto belongs) {
     TriangleList list;
+    size_t triangles = 0;
+    for (size_t m = 0; m < meshes.size(); ++m) {
+      if (belongs(m) && seen_by_lines(meshes[m])) triangles += meshes[m].mesh->triangles();
+    }
+    list.reserve(triangles);
     for (size_t m = 0; m < meshes.size(); ++m) {
       if (belongs(m) && seen_by_lines(meshes[m])) list.add(*meshes[m].mesh, bvh.first_triangle[m]);
     }
