@@ -1,0 +1,167 @@
+#include "server/http_preview.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "film/own_error.h"
+#include "proto/status.h"
+#include "server/assembler.h"
+#include "server/http_png.h"
+#include "server/job_report.h"
+
+namespace penumbra {
+namespace {
+
+constexpr uint64_t kAssemblyBytes = uint64_t{256} << 20;
+constexpr double kLeastSeconds = 1, kRestShare = 10;
+constexpr size_t kMostKept = 16;
+
+double steady_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+struct Taken {
+  std::vector<MixSummary> mixes;
+  Assembly assembly;
+  size_t results = 0;
+};
+
+uint8_t srgb(double v) {
+  if (!(v > 0)) return 0;
+  const double encoded = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(std::min(v, 1.0), 1 / 2.4) - 0.055;
+  return static_cast<uint8_t>(std::lround(255 * encoded));
+}
+
+/// The curve of each mix, from its images at checkpoints in order and the final one.
+class Curves {
+ public:
+  explicit Curves(const std::vector<MixSummary>& mixes)
+      : mixes_(mixes), curves_(mixes.size()), latest_(mixes.size()) {}
+
+  void add(const AssembledFrame& frame) {
+    const auto m = static_cast<size_t>(frame.mix);
+    const std::vector<Checkpoint>& points = mixes_[m].checkpoints;
+    const auto c = static_cast<size_t>(frame.checkpoint);
+    if (frame.checkpoint < 0 || c >= points.size()) return;
+    Latest& latest = latest_[m];
+    if (!latest.image.rgb.empty())
+      if (const auto own = own_error(latest.image, latest.at.passes, frame.image, points[c].passes))
+        put(m, latest.at, own->relmse);
+    if (frame.final)
+      if (const auto own = own_error(frame.image)) put(m, points[c], own->relmse);
+    if (points[c].passes > latest.at.passes) latest = {points[c], frame.image};
+  }
+  std::vector<std::vector<CurvePoint>> take() { return std::move(curves_); }
+
+ private:
+  struct Latest {
+    Checkpoint at;
+    FilmImage image;
+  };
+  void put(size_t mix, const Checkpoint& at, double error) {
+    if (at.passes > 0 && error > 0) curves_[mix].push_back({at.passes, at.cpu_seconds, error});
+  }
+
+  const std::vector<MixSummary>& mixes_;
+  std::vector<std::vector<CurvePoint>> curves_;
+  std::vector<Latest> latest_;
+};
+
+absl::StatusOr<std::shared_ptr<const Preview>> make(const Taken& taken, const BlobFolder& blobs) {
+  auto preview = std::make_shared<Preview>();
+  preview->images.resize(taken.mixes.size());
+  Curves curves(taken.mixes);
+  double exposure = 0;
+  RETURN_IF_ERROR(assemble(taken.assembly, blobs, true, kAssemblyBytes, [&](const AssembledFrame& frame) {
+    curves.add(frame);
+    if (frame.final) {
+      if (exposure == 0) exposure = preview_exposure(frame.image);
+      preview->images[static_cast<size_t>(frame.mix)] = preview_png(frame.image, exposure);
+    }
+    return absl::OkStatus();
+  }));
+  preview->curves = curves.take();
+  return preview;
+}
+
+}  // namespace
+
+double preview_exposure(const FilmImage& image) {
+  std::vector<float> luminance;
+  luminance.reserve(image.pixels());
+  for (size_t p = 0; p < image.pixels(); ++p)
+    luminance.push_back(0.2126f * image.rgb[3 * p] + 0.7152f * image.rgb[3 * p + 1] +
+                        0.0722f * image.rgb[3 * p + 2]);
+  if (luminance.empty()) return 1;
+  const auto bright =
+      luminance.begin() + static_cast<ptrdiff_t>(0.9 * static_cast<double>(luminance.size() - 1));
+  std::nth_element(luminance.begin(), bright, luminance.end());
+  return *bright > 0 ? 0.7 / *bright : 1;
+}
+
+std::string preview_png(const FilmImage& image, double exposure) {
+  const PixelRect& w = image.window;
+  const int scale = std::max(1, (std::max(w.width(), w.height()) + kPreviewEdge - 1) / kPreviewEdge);
+  const int width = (w.width() + scale - 1) / scale, height = (w.height() + scale - 1) / scale;
+  std::vector<uint8_t> bytes;
+  bytes.reserve(3 * static_cast<size_t>(width) * static_cast<size_t>(height));
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const int x1 = std::min((x + 1) * scale, w.width()), y1 = std::min((y + 1) * scale, w.height());
+      double sum[3] = {0, 0, 0};
+      for (int j = y * scale; j < y1; ++j)
+        for (int i = x * scale; i < x1; ++i)
+          for (size_t c = 0; c < 3; ++c) sum[c] += image.rgb[3 * image.index(w.x0 + i, w.y0 + j) + c];
+      for (const double s : sum) bytes.push_back(srgb(exposure * s / ((x1 - x * scale) * (y1 - y * scale))));
+    }
+  return png(width, height, bytes);
+}
+
+void Previews::forget_oldest() {
+  while (kept_.size() > kMostKept)
+    kept_.erase(std::min_element(kept_.begin(), kept_.end(), [](const auto& a, const auto& b) {
+      return a.second.last_looked_at < b.second.last_looked_at;
+    }));
+}
+
+absl::StatusOr<std::shared_ptr<const Preview>> Previews::of(const JobId& job) {
+  const std::lock_guard lock(mutex_);
+  const double begun = steady_seconds();
+  if (const auto kept = kept_.find(job); kept != kept_.end() && begun < kept->second.not_before) {
+    kept->second.last_looked_at = begun;
+    return kept->second.preview;
+  }
+  ASSIGN_OR_RETURN(const absl::StatusOr<Taken> taken,
+                   coordinator_.call([&](Scheduler& scheduler, const Now& now) -> absl::StatusOr<Taken> {
+                     const JobRecord* record = scheduler.find(job);
+                     if (record == nullptr)
+                       return make_status(absl::StatusCode::kNotFound, "no job {:.80}", job);
+                     Taken out{summary_of(scheduler, *record, now).mixes, assembly_of(*record), 0};
+                     for (const Digest& digest : out.assembly.results) out.results += !digest.empty();
+                     return out;
+                   }));
+  RETURN_IF_ERROR(taken.status());
+  Kept& kept = kept_[job];
+  kept.last_looked_at = begun;
+  if (!kept.preview || kept.results != taken->results) {
+    if (taken->results == 0) {
+      kept.preview = std::make_shared<Preview>(Preview{std::vector<std::string>(taken->mixes.size()), {}});
+    } else {
+      absl::StatusOr<std::shared_ptr<const Preview>> made = make(*taken, coordinator_.blobs());
+      if (!made.ok()) {
+        kept_.erase(job);
+        return absl::UnavailableError(made.status().message());  // a result that is gone is no missing job
+      }
+      kept.preview = *std::move(made);
+    }
+    kept.results = taken->results;
+  }
+  const double spent = steady_seconds() - begun;
+  kept.not_before = begun + spent + std::max(kLeastSeconds, kRestShare * spent);
+  const std::shared_ptr<const Preview> preview = kept.preview;
+  forget_oldest();
+  return preview;
+}
+
+}  // namespace penumbra

@@ -1,0 +1,57 @@
+#pragma once
+// A job's pictures and its error as it falls, from what was accepted so far. Assembled when somebody looks,
+// on the viewer's thread, and at most for a tenth of the time.
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "film/film_image.h"
+#include "server/coordinator.h"
+
+namespace penumbra {
+
+/// Longest edge of a preview, pixels; larger images are averaged over blocks.
+inline constexpr int kPreviewEdge = 960;
+
+struct CurvePoint {
+  int64_t passes = 0;
+  double cpu_seconds = 0;
+  double estimated_relmse = 0;  ///< film/own_error.h: the server has no reference
+};
+
+struct Preview {
+  std::vector<std::string> images;              ///< PNG, one per mix; empty: nothing was accepted yet
+  std::vector<std::vector<CurvePoint>> curves;  ///< one per mix
+};
+
+/// 8-bit sRGB, all mixes with the exposure of the first: its 90th percentile of luminance becomes 0.7.
+std::string preview_png(const FilmImage& image, double exposure);
+/// The factor that does so; 1 for a black image.
+double preview_exposure(const FilmImage& image);
+
+class Previews {
+ public:
+  explicit Previews(Coordinator& coordinator) : coordinator_(coordinator) {}
+  /// The latest preview; made again when results have come and ten times the last making has passed. NotFound
+  /// for a job that is not there; an empty one before the first result.
+  absl::StatusOr<std::shared_ptr<const Preview>> of(const JobId& job);
+
+ private:
+  struct Kept {
+    std::shared_ptr<const Preview> preview;
+    size_t results = 0;         ///< accepted when it was made
+    double not_before = 0;      ///< steady seconds
+    double last_looked_at = 0;  ///< steady seconds
+  };
+  void forget_oldest();
+
+  Coordinator& coordinator_;
+  std::mutex mutex_;  ///< one is made at a time
+  std::map<JobId, Kept> kept_;
+};
+
+}  // namespace penumbra
