@@ -8,7 +8,6 @@
 #include "proto/status.h"
 #include "server/dashboard_files.h"
 #include "server/http_metrics.h"
-#include "server/job_report.h"
 
 namespace penumbra {
 namespace {
@@ -44,15 +43,9 @@ Json worker_json(const WorkerView& w) {
   return {{"host", w.info.host},         {"name", w.name},         {"id", w.info.id},
           {"threads", w.info.cores},     {"isa", w.info.isa},      {"version", w.version},
           {"leases", w.leases},          {"draining", w.draining}, {"silence_seconds", w.silence_seconds},
-          {"cpu_seconds", w.cpu_seconds}};
+          {"cpu_seconds", w.cpu_seconds},
+          {"set_aside", w.set_aside}};
 }
-
-/// A job's figures and why it is (not) running, taken at one moment.
-struct JobDetail {
-  JobStatus status;
-  std::vector<MixSummary> mixes;
-  std::vector<std::string> why;
-};
 
 Json detail_json(const JobDetail& detail, const Preview& preview) {
   Json json = status_json(detail.status);
@@ -110,21 +103,15 @@ HttpReply HttpPages::state() {
 }
 
 HttpReply HttpPages::job(const JobId& id) {
+  const auto detail = snapshots_.detail(id);
+  if (!detail.ok()) return failure(detail.status());
   const auto preview = previews_.of(id);
   if (!preview.ok()) return failure(preview.status());
-  const auto detail =
-      coordinator_.call([&](Scheduler& scheduler, const Now& now) -> absl::StatusOr<JobDetail> {
-        const JobRecord* record = scheduler.find(id);
-        if (record == nullptr) return make_status(absl::StatusCode::kNotFound, "no job {:.80}", id);
-        return JobDetail{status_of(scheduler, *record, now), summary_of(scheduler, *record, now).mixes,
-                         explain(scheduler, *record, now)};
-      });
-  if (!detail.ok()) return failure(detail.status());
-  if (!detail->ok()) return failure(detail->status());
   return json_reply(detail_json(**detail, **preview));
 }
 
 HttpReply HttpPages::image(const JobId& id, const std::string& mix) {
+  if (const auto detail = snapshots_.detail(id); !detail.ok()) return failure(detail.status());
   const auto preview = previews_.of(id);
   if (!preview.ok()) return failure(preview.status());
   size_t index = 0;

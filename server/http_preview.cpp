@@ -16,6 +16,7 @@ namespace {
 constexpr uint64_t kAssemblyBytes = uint64_t{256} << 20;
 constexpr double kLeastSeconds = 1, kRestShare = 10;
 constexpr size_t kMostKept = 16;
+constexpr int kWaitSeconds = 2;  // for another's making
 
 double steady_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -118,49 +119,65 @@ std::string preview_png(const FilmImage& image, double exposure) {
   return png(width, height, bytes);
 }
 
-void Previews::forget_oldest() {
+std::shared_ptr<const Preview> Previews::fresh(const JobId& job, double now) {
+  const std::lock_guard lock(mutex_);
+  const auto kept = kept_.find(job);
+  if (kept == kept_.end() || now >= kept->second.not_before) return nullptr;
+  kept->second.last_looked_at = now;
+  return kept->second.preview;
+}
+
+void Previews::keep(const JobId& job, Kept kept) {
+  const std::lock_guard lock(mutex_);
+  kept_[job] = std::move(kept);
   while (kept_.size() > kMostKept)
     kept_.erase(std::min_element(kept_.begin(), kept_.end(), [](const auto& a, const auto& b) {
       return a.second.last_looked_at < b.second.last_looked_at;
     }));
 }
 
-absl::StatusOr<std::shared_ptr<const Preview>> Previews::of(const JobId& job) {
-  const std::lock_guard lock(mutex_);
-  const double begun = steady_seconds();
-  if (const auto kept = kept_.find(job); kept != kept_.end() && begun < kept->second.not_before) {
-    kept->second.last_looked_at = begun;
-    return kept->second.preview;
-  }
+absl::Status Previews::renew(const JobId& job, Kept& kept) {
   ASSIGN_OR_RETURN(const absl::StatusOr<Taken> taken,
-                   coordinator_.call([&](Scheduler& scheduler, const Now& now) -> absl::StatusOr<Taken> {
+                   coordinator_.call([&](Scheduler& scheduler, const Now&) -> absl::StatusOr<Taken> {
                      const JobRecord* record = scheduler.find(job);
                      if (record == nullptr)
                        return make_status(absl::StatusCode::kNotFound, "no job {:.80}", job);
-                     Taken out{summary_of(scheduler, *record, now).mixes, assembly_of(*record), 0};
+                     Taken out{mix_summaries(*record), assembly_of(*record), 0};
                      for (const Digest& digest : out.assembly.results) out.results += !digest.empty();
                      return out;
                    }));
   RETURN_IF_ERROR(taken.status());
-  Kept& kept = kept_[job];
-  kept.last_looked_at = begun;
-  if (!kept.preview || kept.results != taken->results) {
-    if (taken->results == 0) {
-      kept.preview = std::make_shared<Preview>(Preview{std::vector<std::string>(taken->mixes.size()), {}});
-    } else {
-      absl::StatusOr<std::shared_ptr<const Preview>> made = make(*taken, coordinator_.blobs());
-      if (!made.ok()) {
-        kept_.erase(job);
-        return absl::UnavailableError(made.status().message());  // a result that is gone is no missing job
-      }
-      kept.preview = *std::move(made);
-    }
-    kept.results = taken->results;
+  if (kept.preview && kept.results == taken->results) return absl::OkStatus();
+  kept.results = taken->results;
+  if (taken->results == 0) {
+    kept.preview = std::make_shared<Preview>(Preview{std::vector<std::string>(taken->mixes.size()), {}});
+    return absl::OkStatus();
   }
+  absl::StatusOr<std::shared_ptr<const Preview>> made = make(*taken, coordinator_.blobs());
+  // A result that is gone is no missing job.
+  if (!made.ok()) return absl::UnavailableError(made.status().message());
+  kept.preview = *std::move(made);
+  return absl::OkStatus();
+}
+
+absl::StatusOr<std::shared_ptr<const Preview>> Previews::of(const JobId& job) {
+  if (auto preview = fresh(job, steady_seconds())) return preview;
+  Kept kept;
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto found = kept_.find(job); found != kept_.end()) kept = found->second;
+  }
+  std::unique_lock making(making_, std::defer_lock);
+  if (!making.try_lock_for(std::chrono::seconds(kept.preview ? 0 : kWaitSeconds)))
+    return kept.preview ? kept.preview : std::make_shared<const Preview>();
+  const double begun = steady_seconds();
+  if (auto preview = fresh(job, begun)) return preview;  // made while this one waited
+  RETURN_IF_ERROR(renew(job, kept));
   const double spent = steady_seconds() - begun;
+  kept.last_looked_at = begun;
   kept.not_before = begun + spent + std::max(kLeastSeconds, kRestShare * spent);
-  const std::shared_ptr<const Preview> preview = kept.preview;
-  forget_oldest();
+  std::shared_ptr<const Preview> preview = kept.preview;
+  keep(job, std::move(kept));
   return preview;
 }
 

@@ -37,7 +37,8 @@ class Previews {
  public:
   explicit Previews(Coordinator& coordinator) : coordinator_(coordinator) {}
   /// The latest preview; made again when results have come and ten times the last making has passed. NotFound
-  /// for a job that is not there; an empty one before the first result.
+  /// for a job that is not there; an empty one before the first result. While one is being made, others get
+  /// the previous one, or after two seconds an empty one.
   absl::StatusOr<std::shared_ptr<const Preview>> of(const JobId& job);
 
  private:
@@ -47,11 +48,14 @@ class Previews {
     double not_before = 0;      ///< steady seconds
     double last_looked_at = 0;  ///< steady seconds
   };
-  void forget_oldest();
+  std::shared_ptr<const Preview> fresh(const JobId& job, double now);
+  absl::Status renew(const JobId& job, Kept& kept);
+  void keep(const JobId& job, Kept kept);
 
   Coordinator& coordinator_;
-  std::mutex mutex_;  ///< one is made at a time
-  std::map<JobId, Kept> kept_;
+  std::timed_mutex making_;  ///< one is made at a time; taken before mutex_
+  std::mutex mutex_;
+  std::map<JobId, Kept> kept_;  // guarded by mutex_
 };
 
 }  // namespace penumbra

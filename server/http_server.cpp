@@ -3,7 +3,9 @@
 #include <civetweb.h>
 #include <fmt/format.h>
 #include <openssl/ssl.h>
+#include <spdlog/spdlog.h>
 
+#include <exception>
 #include <utility>
 
 #include "proto/status.h"
@@ -12,8 +14,10 @@
 namespace penumbra {
 namespace {
 
-constexpr const char* kThreads = "4";
+// A viewer that reads or asks slowly holds a thread, for so long at most; the others must still be answered.
+constexpr const char* kThreads = "16";
 constexpr const char* kRequestTimeoutMs = "10000";
+constexpr const char* kMostRequestBytes = "16384";  // line and headers
 
 const char* reason(int code) {
   switch (code) {
@@ -27,6 +31,8 @@ const char* reason(int code) {
       return "Not Found";
     case 405:
       return "Method Not Allowed";
+    case 500:
+      return "Internal Server Error";
     case 503:
       return "Service Unavailable";
     default:
@@ -63,6 +69,26 @@ struct HttpServer::Parts {
     if (context != nullptr) mg_stop(context);
   }
 
+  static HttpReply plain(int code) {
+    return {code, "text/plain; charset=utf-8", fmt::format("{}\n", reason(code))};
+  }
+
+  /// Nothing that goes wrong for a viewer may end the coordinator.
+  HttpReply handle(const HttpRequest& request) const {
+    try {
+      return handler(request);
+    } catch (const std::exception& error) {
+      spdlog::warn("http: {}: {}", request.path, error.what());
+      return plain(500);
+    }
+  }
+
+  /// civetweb's own complaints: mostly of peers that hung up, which anybody can make us write.
+  static int log(const mg_connection*, const char* message) {
+    spdlog::debug("http: {}", message);
+    return 1;
+  }
+
   static int answer(mg_connection* connection, void* self) {
     const Parts& parts = *static_cast<const Parts*>(self);
     const mg_request_info* info = mg_get_request_info(connection);
@@ -71,9 +97,7 @@ struct HttpServer::Parts {
     const HttpHeaders headers{info->request_method, header(connection, "Host"),
                               header(connection, "Authorization")};
     const std::optional<int> refused = refusal(parts.access, request.path, headers);
-    const HttpReply reply =
-        refused ? HttpReply{*refused, "text/plain; charset=utf-8", fmt::format("{}\n", reason(*refused))}
-                : parts.handler(request);
+    const HttpReply reply = refused ? plain(*refused) : parts.handle(request);
     send(connection, reply, headers.method != "HEAD");
     return reply.code;
   }
@@ -114,7 +138,7 @@ absl::StatusOr<HttpServer> HttpServer::start(ListenOptions listening, Handler ha
   if (!secured && !parts->access.loopback && !listening.insecure)
     return invalid_input(
         "--http {}: other machines can reach this address, so it needs --tls-cert, --tls-key, --tls-ca and "
-        "--token-file",
+        "--token-file (or --insecure, where the network itself can be trusted)",
         address);
   if (secured) {
     // That the flags belong together is said by the gRPC side, which has the same.
@@ -128,9 +152,11 @@ absl::StatusOr<HttpServer> HttpServer::start(ListenOptions listening, Handler ha
     return make_status(absl::StatusCode::kFailedPrecondition, "--http {}: civetweb cannot load libssl.so",
                        address);
   const std::string port = address + (secured ? "s" : "");
-  const char* options[] = {"listening_ports",    port.c_str(),      "num_threads", kThreads,
-                           "request_timeout_ms", kRequestTimeoutMs, nullptr};
+  const char* options[] = {"listening_ports",    port.c_str(),      "num_threads",      kThreads,
+                           "request_timeout_ms", kRequestTimeoutMs, "max_request_size", kMostRequestBytes,
+                           nullptr};
   mg_callbacks callbacks{};
+  callbacks.log_message = Parts::log;
   if (secured) callbacks.init_ssl = Parts::init_tls;
   parts->context = mg_start(&callbacks, parts.get(), options);
   if (parts->context == nullptr)

@@ -5,7 +5,6 @@
 #include <set>
 
 #include "proto/status.h"
-#include "server/job_report.h"
 
 namespace penumbra {
 namespace {
@@ -23,7 +22,8 @@ WorkerView view_of(const WorkerRecord& worker, const Now& now) {
           worker.leases.size(),
           worker.draining,
           std::max(0.0, now.steady - worker.last_seen),
-          worker.process_cpu_seconds};
+          worker.process_cpu_seconds,
+          worker.set_aside};
 }
 
 }  // namespace
@@ -59,6 +59,35 @@ absl::StatusOr<std::shared_ptr<const Snapshot>> Snapshots::take() {
 
 absl::StatusOr<std::shared_ptr<const Snapshot>> Snapshots::latest() {
   const std::lock_guard lock(mutex_);
+  return current();
+}
+
+absl::StatusOr<std::shared_ptr<const JobDetail>> Snapshots::detail(const JobId& job) {
+  const std::lock_guard lock(mutex_);
+  ASSIGN_OR_RETURN(const std::shared_ptr<const Snapshot> snapshot, current());
+  const auto missing = [&] { return make_status(absl::StatusCode::kNotFound, "no job {:.80}", job); };
+  // Names that are made up do not reach the coordinator.
+  if (std::none_of(snapshot->jobs.begin(), snapshot->jobs.end(),
+                   [&](const JobView& view) { return view.status.job == job; }))
+    return missing();
+  const double now = steady_seconds();
+  std::erase_if(details_, [&](const auto& entry) { return now - entry.second.taken >= kLongestSeconds; });
+  if (const auto kept = details_.find(job); kept != details_.end()) return kept->second.detail;
+  auto taken =
+      coordinator_.call([&](Scheduler& scheduler, const Now& at) -> std::shared_ptr<const JobDetail> {
+        const JobRecord* record = scheduler.find(job);
+        if (record == nullptr) return nullptr;
+        return std::make_shared<JobDetail>(JobDetail{status_of(scheduler, *record, at),
+                                                     mix_summaries(*record),
+                                                     explain(scheduler, *record, at)});
+      });
+  RETURN_IF_ERROR(taken.status());
+  if (*taken == nullptr) return missing();
+  details_[job] = {*taken, now};
+  return *taken;
+}
+
+absl::StatusOr<std::shared_ptr<const Snapshot>> Snapshots::current() {
   if (coordinator_.failed()) return absl::UnavailableError("the job store failed");
   const double now = steady_seconds();
   if (latest_ && now - latest_steady_ < kLongestSeconds) return latest_;

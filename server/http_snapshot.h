@@ -9,6 +9,7 @@
 
 #include "absl/status/statusor.h"
 #include "server/coordinator.h"
+#include "server/job_report.h"
 
 namespace penumbra {
 
@@ -19,6 +20,7 @@ struct WorkerView {
   bool draining = false;
   double silence_seconds = 0;  ///< since its last call
   double cpu_seconds = 0;      ///< of its process
+  std::string set_aside;       ///< why it gets no more tasks; empty: it does
 };
 
 struct JobView {
@@ -33,20 +35,35 @@ struct Snapshot {
   double server_cpu_seconds = 0;  ///< of this process
 };
 
+/// A job's figures and why it is (not) running, taken at one moment.
+struct JobDetail {
+  JobStatus status;
+  std::vector<MixSummary> mixes;
+  std::vector<std::string> why;
+};
+
 class Snapshots {
  public:
   explicit Snapshots(Coordinator& coordinator) : coordinator_(coordinator) {}
   /// Not older than a second. Unavailable when the coordinator has stopped or its store has failed.
   absl::StatusOr<std::shared_ptr<const Snapshot>> latest();
+  /// Not older than a second. NotFound for a job that the latest snapshot does not have.
+  absl::StatusOr<std::shared_ptr<const JobDetail>> detail(const JobId& job);
 
  private:
-  absl::StatusOr<std::shared_ptr<const Snapshot>> take();
+  struct Kept {
+    std::shared_ptr<const JobDetail> detail;
+    double taken = 0;  ///< steady seconds
+  };
+  absl::StatusOr<std::shared_ptr<const Snapshot>> current();  // with mutex_ held
+  absl::StatusOr<std::shared_ptr<const Snapshot>> take();     // likewise
 
   Coordinator& coordinator_;
   std::mutex mutex_;
   std::shared_ptr<const Snapshot> latest_;  // guarded by mutex_
   double latest_steady_ = 0;                // guarded by mutex_
   std::map<JobId, JobView> final_;          // guarded by mutex_: what never changes again is copied once
+  std::map<JobId, Kept> details_;           // guarded by mutex_
 };
 
 }  // namespace penumbra

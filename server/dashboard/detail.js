@@ -37,7 +37,7 @@ function showPicture(job) {
 
 async function refreshDetail() {
   if (!detail.job) return;
-  const reply = await fetch(`/api/jobs/${encodeURIComponent(detail.job)}`);
+  const reply = await fetch(`/api/jobs/${encodeURIComponent(detail.job)}`, { signal: AbortSignal.timeout(patience) });
   if (reply.status === 404) { detail.job = null; document.getElementById("detail").hidden = true; return; }
   if (!reply.ok) throw new Error(await reply.text());
   const job = await reply.json();

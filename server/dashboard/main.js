@@ -1,5 +1,5 @@
-// Asks the coordinator once a second, and shows what it says.
-const period = 1000;
+// Asks the coordinator once a second while somebody can see the page, and shows what it says.
+const period = 1000, patience = 15000;
 
 function jobRow(job) {
   const open = el("button", { type: "button" }, job.job);
@@ -15,7 +15,7 @@ function jobRow(job) {
 
 function workerRow(worker) {
   return el("tr", {}, el("td", {}, worker.name), el("td", {}, worker.host), el("td", {}, String(worker.threads)), el("td", {}, worker.isa),
-    el("td", {}, `${worker.leases} tiles${worker.draining ? ", draining" : ""}`), el("td", {}, seconds(worker.cpu_seconds)),
+    el("td", { title: worker.set_aside }, `${worker.leases} tiles${worker.draining ? ", draining" : ""}${worker.set_aside ? ", set aside" : ""}`), el("td", {}, seconds(worker.cpu_seconds)),
     el("td", {}, `${worker.silence_seconds.toFixed(1)} s ago`));
 }
 
@@ -46,8 +46,12 @@ function tellLoss(fault) {
 }
 
 async function refresh() {
+  if (document.hidden) {
+    document.addEventListener("visibilitychange", refresh, { once: true });
+    return;
+  }
   try {
-    const reply = await fetch("/api/state");
+    const reply = await fetch("/api/state", { signal: AbortSignal.timeout(patience) });
     if (!reply.ok) throw new Error(await reply.text());
     const state = await reply.json();
     tellState(state);
