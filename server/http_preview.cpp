@@ -14,7 +14,7 @@ namespace penumbra {
 namespace {
 
 constexpr uint64_t kAssemblyBytes = uint64_t{256} << 20;
-constexpr double kLeastSeconds = 1, kRestShare = 10;
+constexpr double kLeastSeconds = 2, kRestShare = 20;
 constexpr size_t kMostKept = 16;
 constexpr int kWaitSeconds = 2;  // for another's making
 
@@ -27,6 +27,13 @@ struct Taken {
   Assembly assembly;
   size_t results = 0;
 };
+
+/// Where nothing was accepted yet: a shade of its own, so that it is not taken for black.
+constexpr uint8_t kUnseen[3] = {43, 50, 66};
+
+bool seen(const FilmImage& image, size_t pixel) {
+  return image.samples.empty() || image.samples[pixel] > 0;
+}
 
 uint8_t srgb(double v) {
   if (!(v > 0)) return 0;
@@ -44,14 +51,18 @@ class Curves {
     const auto m = static_cast<size_t>(frame.mix);
     const std::vector<Checkpoint>& points = mixes_[m].checkpoints;
     const auto c = static_cast<size_t>(frame.checkpoint);
-    if (frame.checkpoint < 0 || c >= points.size()) return;
     Latest& latest = latest_[m];
+    if (frame.checkpoint >= 0 && c < points.size()) {
+      if (!latest.image.rgb.empty())
+        if (const auto own = own_error(latest.image, latest.at.passes, frame.image, points[c].passes))
+          put(m, latest.at, own->relmse);
+      if (points[c].passes > latest.at.passes) latest = {points[c], frame.image};
+    }
+    if (!frame.final) return;
+    // Nothing later to compare the latest whole picture with: its own variance speaks for it.
     if (!latest.image.rgb.empty())
-      if (const auto own = own_error(latest.image, latest.at.passes, frame.image, points[c].passes))
-        put(m, latest.at, own->relmse);
-    if (frame.final)
-      if (const auto own = own_error(frame.image)) put(m, points[c], own->relmse);
-    if (points[c].passes > latest.at.passes) latest = {points[c], frame.image};
+      if (const auto own = own_error(latest.image)) put(m, latest.at, own->relmse);
+    latest.image = {};
   }
   std::vector<std::vector<CurvePoint>> take() { return std::move(curves_); }
 
@@ -91,9 +102,11 @@ absl::StatusOr<std::shared_ptr<const Preview>> make(const Taken& taken, const Bl
 double preview_exposure(const FilmImage& image) {
   std::vector<float> luminance;
   luminance.reserve(image.pixels());
-  for (size_t p = 0; p < image.pixels(); ++p)
+  for (size_t p = 0; p < image.pixels(); ++p) {
+    if (!seen(image, p)) continue;
     luminance.push_back(0.2126f * image.rgb[3 * p] + 0.7152f * image.rgb[3 * p + 1] +
                         0.0722f * image.rgb[3 * p + 2]);
+  }
   if (luminance.empty()) return 1;
   const auto bright =
       luminance.begin() + static_cast<ptrdiff_t>(0.9 * static_cast<double>(luminance.size() - 1));
@@ -111,10 +124,16 @@ std::string preview_png(const FilmImage& image, double exposure) {
     for (int x = 0; x < width; ++x) {
       const int x1 = std::min((x + 1) * scale, w.width()), y1 = std::min((y + 1) * scale, w.height());
       double sum[3] = {0, 0, 0};
+      int count = 0;
       for (int j = y * scale; j < y1; ++j)
-        for (int i = x * scale; i < x1; ++i)
-          for (size_t c = 0; c < 3; ++c) sum[c] += image.rgb[3 * image.index(w.x0 + i, w.y0 + j) + c];
-      for (const double s : sum) bytes.push_back(srgb(exposure * s / ((x1 - x * scale) * (y1 - y * scale))));
+        for (int i = x * scale; i < x1; ++i) {
+          const size_t p = image.index(w.x0 + i, w.y0 + j);
+          if (!seen(image, p)) continue;
+          ++count;
+          for (size_t c = 0; c < 3; ++c) sum[c] += image.rgb[3 * p + c];
+        }
+      for (size_t c = 0; c < 3; ++c)
+        bytes.push_back(count == 0 ? kUnseen[c] : srgb(exposure * sum[c] / count));
     }
   return png(width, height, bytes);
 }

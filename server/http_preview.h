@@ -1,6 +1,6 @@
 #pragma once
 // A job's pictures and its error as it falls, from what was accepted so far. Assembled when somebody looks,
-// on the viewer's thread, and at most for a tenth of the time.
+// on the viewer's thread, and at most for a twentieth of the time.
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -28,7 +28,7 @@ struct Preview {
   std::vector<std::vector<CurvePoint>> curves;  ///< one per mix
 };
 
-/// 8-bit sRGB, all mixes with the exposure of the first: its 90th percentile of luminance becomes 0.7.
+/// 8-bit sRGB, pixels without samples in a grey of their own; all mixes with the exposure of the first: its 90th percentile of luminance becomes 0.7.
 std::string preview_png(const FilmImage& image, double exposure);
 /// The factor that does so; 1 for a black image.
 double preview_exposure(const FilmImage& image);
@@ -36,7 +36,7 @@ double preview_exposure(const FilmImage& image);
 class Previews {
  public:
   explicit Previews(Coordinator& coordinator) : coordinator_(coordinator) {}
-  /// The latest preview; made again when results have come and ten times the last making has passed. NotFound
+  /// The latest preview; made again when results have come and twenty times the last making has passed. NotFound
   /// for a job that is not there; an empty one before the first result. While one is being made, others get
   /// the previous one, or after two seconds an empty one.
   absl::StatusOr<std::shared_ptr<const Preview>> of(const JobId& job);

@@ -5,7 +5,7 @@ function drawCurve(box, mixes) {
   const series = mixes.map((m, i) => ({ name: m.mix, i, points: m.curve.filter((p) => p.cpu_seconds > 0 && p.estimated_relmse > 0) }))
     .filter((s) => s.points.length);
   if (!series.length) {
-    box.replaceChildren(el("p", { class: "note" }, "No whole picture with two passes yet."));
+    box.replaceChildren(el("p", { class: "note" }, "None yet: it takes two passes in every pixel."));
     return;
   }
   const width = Math.max(280, box.clientWidth), height = 270, margin = { top: 8, right: 12, bottom: 40, left: 56 };

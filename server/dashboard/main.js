@@ -8,7 +8,7 @@ function jobRow(job) {
     el("td", {}, open), el("td", { title: job.scene }, baseName(job.scene)), el("td", { class: job.state, title: job.message }, job.state),
     el("td", {}, bar, `${Math.floor(100 * job.fraction)} %`), el("td", {}, `${job.tasks.done} / ${job.tasks.total}, ${job.tasks.leased} held`),
     el("td", {}, seconds(job.cpu_seconds)), el("td", {}, seconds(job.wall_seconds)),
-    el("td", {}, new Date(1000 * job.submitted).toLocaleTimeString()));
+    el("td", {}, moment(job.submitted)));
   row.addEventListener("click", () => showJob(job.job).catch(tellLoss));
   return row;
 }

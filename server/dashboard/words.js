@@ -17,5 +17,11 @@ function seconds(v) {
   return v < 7200 ? `${Math.round(v / 60)} min` : `${(v / 3600).toFixed(1)} h`;
 }
 
+/** The time of day; with the date unless it is today's. */
+function moment(unix) {
+  const at = new Date(1000 * unix);
+  return at.toDateString() === new Date().toDateString() ? at.toLocaleTimeString() : at.toLocaleString();
+}
+
 const baseName = (path) => path.split("/").pop();
 const colour = (i) => `var(--c${i % 8})`;

@@ -78,6 +78,16 @@ TEST(Preview, LargeImagesAreAveraged) {
   EXPECT_EQ(d.height, 2u);
 }
 
+TEST(Preview, WhatHasNoSamplesIsNeitherBlackNorWeighed) {
+  FilmImage image = constant(4, 1, 0);
+  image.samples = {0, 0, 0, 4};
+  for (size_t c = 0; c < 3; ++c) image.rgb[9 + c] = 0.5f;
+  EXPECT_NEAR(preview_exposure(image), 1.4, 1e-6);
+  const Decoded d = decode(preview_png(image, 1.4));
+  EXPECT_GT(static_cast<uint8_t>(d.rows[1]), 0);
+  EXPECT_EQ(static_cast<uint8_t>(d.rows[10]), 218);
+}
+
 TEST(Preview, ABlackImageHasAnExposure) {
   EXPECT_EQ(preview_exposure(constant(2, 2, 0)), 1);
 }
