@@ -40,11 +40,10 @@ Json status_json(const JobStatus& s) {
 }
 
 Json worker_json(const WorkerView& w) {
-  return {{"host", w.info.host},         {"name", w.name},         {"id", w.info.id},
-          {"threads", w.info.cores},     {"isa", w.info.isa},      {"version", w.version},
-          {"leases", w.leases},          {"draining", w.draining}, {"silence_seconds", w.silence_seconds},
-          {"cpu_seconds", w.cpu_seconds},
-          {"set_aside", w.set_aside}};
+  return {{"host", w.info.host},          {"name", w.name},          {"id", w.info.id},
+          {"threads", w.info.cores},      {"isa", w.info.isa},       {"version", w.version},
+          {"leases", w.leases},           {"draining", w.draining},  {"silence_seconds", w.silence_seconds},
+          {"cpu_seconds", w.cpu_seconds}, {"set_aside", w.set_aside}};
 }
 
 Json detail_json(const JobDetail& detail, const Preview& preview) {
@@ -136,9 +135,11 @@ HttpReply HttpPages::answer(const HttpRequest& request) {
   if (path == "/api/state") return state();
   constexpr std::string_view kJobs = "/api/jobs/", kImage = "/image.png";
   if (path.starts_with(kJobs)) {
+    const auto mix = request.variables.find("mix");
     const std::string rest = path.substr(kJobs.size());
     if (rest.ends_with(kImage))
-      return image(rest.substr(0, rest.size() - kImage.size()), request.variable("mix"));
+      return image(rest.substr(0, rest.size() - kImage.size()),
+                   mix == request.variables.end() ? "" : mix->second);
     return job(rest);
   }
   return {404, "text/plain; charset=utf-8", "not found\n"};

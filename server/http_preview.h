@@ -28,7 +28,8 @@ struct Preview {
   std::vector<std::vector<CurvePoint>> curves;  ///< one per mix
 };
 
-/// 8-bit sRGB, pixels without samples in a grey of their own; all mixes with the exposure of the first: its 90th percentile of luminance becomes 0.7.
+/// 8-bit sRGB, pixels without samples in a grey of their own; all mixes with the exposure of the first: its
+/// 90th percentile of luminance becomes 0.7.
 std::string preview_png(const FilmImage& image, double exposure);
 /// The factor that does so; 1 for a black image.
 double preview_exposure(const FilmImage& image);
@@ -36,9 +37,9 @@ double preview_exposure(const FilmImage& image);
 class Previews {
  public:
   explicit Previews(Coordinator& coordinator) : coordinator_(coordinator) {}
-  /// The latest preview; made again when results have come and twenty times the last making has passed. NotFound
-  /// for a job that is not there; an empty one before the first result. While one is being made, others get
-  /// the previous one, or after two seconds an empty one.
+  /// The latest preview; made again when results have come and twenty times the last making has passed.
+  /// NotFound for a job that is not there; an empty one before the first result. While one is being made,
+  /// others get the previous one, or after two seconds an empty one.
   absl::StatusOr<std::shared_ptr<const Preview>> of(const JobId& job);
 
  private:

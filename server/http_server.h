@@ -2,6 +2,7 @@
 // The HTTP side of the server: one address, who may ask, and how replies leave. What is asked for is decided
 // elsewhere (http_pages.h).
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -11,10 +12,8 @@
 namespace penumbra {
 
 struct HttpRequest {
-  std::string path;   ///< decoded, begins with '/'
-  std::string query;  ///< after '?', not decoded
-  /// Value of a query's variable, decoded; empty if it is not there.
-  std::string variable(const std::string& name) const;
+  std::string path;                              ///< decoded, begins with '/'
+  std::map<std::string, std::string> variables;  ///< of the query, decoded
 };
 
 struct HttpReply {

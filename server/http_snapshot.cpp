@@ -77,9 +77,8 @@ absl::StatusOr<std::shared_ptr<const JobDetail>> Snapshots::detail(const JobId& 
       coordinator_.call([&](Scheduler& scheduler, const Now& at) -> std::shared_ptr<const JobDetail> {
         const JobRecord* record = scheduler.find(job);
         if (record == nullptr) return nullptr;
-        return std::make_shared<JobDetail>(JobDetail{status_of(scheduler, *record, at),
-                                                     mix_summaries(*record),
-                                                     explain(scheduler, *record, at)});
+        return std::make_shared<JobDetail>(JobDetail{
+            status_of(scheduler, *record, at), mix_summaries(*record), explain(scheduler, *record, at)});
       });
   RETURN_IF_ERROR(taken.status());
   if (*taken == nullptr) return missing();
