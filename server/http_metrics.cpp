@@ -88,7 +88,7 @@ void workers(const Snapshot& snapshot, Families& out) {
   double threads = 0, draining = 0;
   MetricFamily leases{"penumbra_worker_leases", "Tile tasks that the worker holds.", MetricType::Gauge, {}};
   MetricFamily silence{"penumbra_worker_silence_seconds",
-                       "Since the worker called; at 10 its leases end.",
+                       "Since the worker called; at --silence its leases end.",
                        MetricType::Gauge,
                        {}};
   for (const WorkerView& worker : snapshot.workers) {
