@@ -1,5 +1,7 @@
 #include "server/http_preview.h"
 
+#include <time.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -14,12 +16,18 @@ namespace penumbra {
 namespace {
 
 constexpr uint64_t kAssemblyBytes = uint64_t{256} << 20;
-constexpr double kLeastSeconds = 2, kRestShare = 20;
+constexpr double kLeastSeconds = 2, kRestOfCpu = 20, kRestOfWall = 4;
 constexpr size_t kMostKept = 16;
 constexpr int kWaitSeconds = 2;  // for another's making
 
 double steady_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double thread_cpu_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
 struct Taken {
@@ -35,10 +43,21 @@ bool seen(const FilmImage& image, size_t pixel) {
   return image.samples.empty() || image.samples[pixel] > 0;
 }
 
+/// 8-bit codes of linear values: steps of a fifth of a code where the curve is steepest.
+constexpr size_t kSteps = 1 << 14;
+std::vector<uint8_t> srgb_table() {
+  std::vector<uint8_t> table;
+  for (size_t i = 0; i <= kSteps; ++i) {
+    const double v = static_cast<double>(i) / kSteps;
+    const double encoded = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
+    table.push_back(static_cast<uint8_t>(std::lround(255 * encoded)));
+  }
+  return table;
+}
+
 uint8_t srgb(double v) {
-  if (!(v > 0)) return 0;
-  const double encoded = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(std::min(v, 1.0), 1 / 2.4) - 0.055;
-  return static_cast<uint8_t>(std::lround(255 * encoded));
+  static const std::vector<uint8_t> table = srgb_table();
+  return v > 0 ? table[static_cast<size_t>(std::min(v, 1.0) * kSteps + 0.5)] : 0;
 }
 
 /// The curve of each mix, from its images at checkpoints in order and the final one.
@@ -191,10 +210,12 @@ absl::StatusOr<std::shared_ptr<const Preview>> Previews::of(const JobId& job) {
     return kept.preview ? kept.preview : std::make_shared<const Preview>();
   const double begun = steady_seconds();
   if (auto preview = fresh(job, begun)) return preview;  // made while this one waited
+  const double cpu = thread_cpu_seconds();
   RETURN_IF_ERROR(renew(job, kept));
-  const double spent = steady_seconds() - begun;
+  const double end = steady_seconds();
   kept.last_looked_at = begun;
-  kept.not_before = begun + spent + std::max(kLeastSeconds, kRestShare * spent);
+  kept.not_before =
+      end + std::max({kLeastSeconds, kRestOfCpu * (thread_cpu_seconds() - cpu), kRestOfWall * (end - begun)});
   std::shared_ptr<const Preview> preview = kept.preview;
   keep(job, std::move(kept));
   return preview;

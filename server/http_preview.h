@@ -1,6 +1,6 @@
 #pragma once
 // A job's pictures and its error as it falls, from what was accepted so far. Assembled when somebody looks,
-// on the viewer's thread, and at most for a twentieth of the time.
+// on the viewer's thread, and at most for a twentieth of a core.
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -37,9 +37,9 @@ double preview_exposure(const FilmImage& image);
 class Previews {
  public:
   explicit Previews(Coordinator& coordinator) : coordinator_(coordinator) {}
-  /// The latest preview; made again when results have come and twenty times the last making has passed.
-  /// NotFound for a job that is not there; an empty one before the first result. While one is being made,
-  /// others get the previous one, or after two seconds an empty one.
+  /// The latest preview; made again when results have come and twenty times the CPU time of the last making
+  /// has passed. NotFound for a job that is not there; an empty one before the first result. While one is
+  /// being made, others get the previous one, or after two seconds an empty one.
   absl::StatusOr<std::shared_ptr<const Preview>> of(const JobId& job);
 
  private:
