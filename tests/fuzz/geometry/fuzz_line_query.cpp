@@ -1,5 +1,6 @@
 // Line queries over any triangles, from any finite point: every path answers with the scalar reference's
 // bits, in order, within [0,1].
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -36,6 +37,36 @@ class Input {
   size_t size_;
 };
 
+/// The input's own points as ends of chords and as what sees them: chords through vertices, along edges and in
+/// triangles' planes are the common case. Building the hierarchy takes far longer than asking it.
+std::vector<LineQuery> queries_of(const Vec3f& x, const Vec3f& a, const Vec3f& b, const TriangleMesh& mesh) {
+  constexpr size_t kMostPoints = 32;
+  std::vector<LineQuery> queries{{x, a, b}, {x, b, a}};
+  const size_t n = std::min(mesh.positions.size(), kMostPoints);
+  for (size_t i = 0; i < n; ++i) {
+    const Vec3f &p = mesh.positions[i], &next = mesh.positions[(i + 1) % n];
+    queries.push_back({x, p, next});
+    queries.push_back({p, a, b});
+  }
+  return queries;
+}
+
+void check(const LineBvh& bvh, const LineQuery& query) {
+  std::vector<IntervalSet> expected, got;
+  QueryCounters counters;
+  visible_lines(bvh, LinePath::kScalar, {&query, 1}, expected, counters);
+  float end = 0;
+  for (const Interval& i : expected[0]) {
+    PENUMBRA_CHECK(end <= i.lo && i.lo < i.hi && i.hi <= 1);
+    end = i.hi;
+  }
+  visible_lines(bvh, LinePath::kAvx2, {&query, 1}, got, counters);
+  PENUMBRA_CHECK(got[0] == expected[0]);
+  if (widest_line_path() != LinePath::kAvx512) return;
+  visible_lines(bvh, LinePath::kAvx512, {&query, 1}, got, counters);
+  PENUMBRA_CHECK(got[0] == expected[0]);
+}
+
 }  // namespace
 }  // namespace penumbra
 
@@ -53,20 +84,6 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const MeshInput mesh_input{&mesh};
   const auto bvh = build_line_bvh({&mesh_input, 1}, {}, {}, 1);
   PENUMBRA_CHECK(bvh.ok());
-  const LineQuery query{x, a, b};
-  std::vector<IntervalSet> expected, got;
-  QueryCounters counters;
-  visible_lines(*bvh, LinePath::kScalar, {&query, 1}, expected, counters);
-  float end = 0;
-  for (const Interval& i : expected[0]) {
-    PENUMBRA_CHECK(end <= i.lo && i.lo < i.hi && i.hi <= 1);
-    end = i.hi;
-  }
-  visible_lines(*bvh, LinePath::kAvx2, {&query, 1}, got, counters);
-  PENUMBRA_CHECK(got[0] == expected[0]);
-  if (widest_line_path() == LinePath::kAvx512) {
-    visible_lines(*bvh, LinePath::kAvx512, {&query, 1}, got, counters);
-    PENUMBRA_CHECK(got[0] == expected[0]);
-  }
+  for (const LineQuery& query : queries_of(x, a, b, mesh)) check(*bvh, query);
   return 0;
 }
