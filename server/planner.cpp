@@ -284,6 +284,7 @@ static std::vector<double> all_borders(const PlannedPasses& planned) {
 /// The boundaries of a plan whose groups are known.
 static void add_boundaries(const JobSpec& spec, Plan& plan, const std::vector<Share>& shares) {
   const std::vector<PixelRect> tiles = tiles_of(spec);
+  plan.tiles = tiles.size();
   std::vector<int64_t> before(spec.mixes.size(), 0);
   std::vector<std::vector<int64_t>> before_autos(plan.groups.size(), std::vector<int64_t>(tiles.size(), 0));
   for (const auto& [share, checkpoint] : shares) {

@@ -50,6 +50,7 @@ struct Plan {
   std::vector<std::vector<int64_t>> groups;  ///< per automatic mix and tile: passes per scrambled group
   int64_t group = 1;                         ///< passes per independently scrambled group of the others
   std::vector<PassBoundary> boundaries;      ///< ascending; the last has all passes and is a checkpoint
+  uint64_t tiles = 0;                        ///< of the job
   /// Ranges that are sure; those after them change when the plan is looked at again.
   uint64_t sure = 0;
   /// Ranges that must be done before it is; meaningless without an open border.

@@ -11,16 +11,27 @@
 namespace penumbra {
 namespace {
 
-// What is repeated, of the passes that are kept: a few dozen passes of tiles in a short run.
-constexpr double kRepilotShare = 0.03;
+// What is repeated: as many passes of tiles per mix, within these shares of the passes that are kept.
+constexpr double kRepilotPasses = 60;
+constexpr double kLeastRepilotShare = 0.02, kMostRepilotShare = 0.05;
+// The pilot's ratio between mixes is about as sure as that of so many repeated passes.
+constexpr double kRatioPasses = 6;
 // Nothing is decided any more after the border before the last.
 constexpr double kRepilotUntil = kStageBorders[std::size(kStageBorders) - 2];
 
-/// Which of the passes are followed by one that is repeated: every 1/kRepilotShare-th, tiles and mixes one
+/// Which of the passes are followed by one that is repeated: every so many of them, tiles and mixes one
 /// after the other (multiples of the golden ratio).
 double phase(uint64_t number) {
   const double at = static_cast<double>(number) * 0.6180339887498949;
   return at - std::floor(at);
+}
+
+double repilot_share(const PlannedPasses& planned, size_t tiles, size_t mix) {
+  // Of what was planned first: what is sure may not change with later plans.
+  const int64_t passes = stages_of(planned, mix).front().total;
+  return std::clamp(
+      kRepilotPasses / (kRepilotUntil * static_cast<double>(passes) * static_cast<double>(tiles)),
+      kLeastRepilotShare, kMostRepilotShare);
 }
 
 /// Seconds that the pilot foretells for a pass: per mix, per tile.
@@ -98,10 +109,11 @@ std::vector<PassRange> repilot_of(const JobSpec& spec, const Plan& plan, uint64_
   if (!in_stages || !spec.plan.empty() || plan.boundaries[range].share > kRepilotUntil) return {};
   std::vector<PassRange> out;
   for (size_t m = 0; m < spec.mixes.size(); ++m) {
+    const double share = repilot_share(plan.planned, plan.tiles, m);
     const PassRange passes = run_range(plan, range, tile, m);
     const double offset = phase(tile * spec.mixes.size() + m);
     const auto before = [&](int64_t pass) {
-      return static_cast<int64_t>(std::floor(kRepilotShare * static_cast<double>(pass) + offset));
+      return static_cast<int64_t>(std::floor(share * static_cast<double>(pass) + offset));
     };
     out.push_back({before(passes.begin), before(passes.end)});
   }
@@ -110,13 +122,13 @@ std::vector<PassRange> repilot_of(const JobSpec& spec, const Plan& plan, uint64_
 
 double expected_repilot_seconds(const JobSpec& spec) {
   const auto* cpu = std::get_if<CpuSecondsBudget>(&spec.budget);
-  return cpu != nullptr && spec.plan.empty() ? kRepilotShare * kRepilotUntil * cpu->seconds : 0;
+  return cpu != nullptr && spec.plan.empty() ? kLeastRepilotShare * kRepilotUntil * cpu->seconds : 0;
 }
 
-double Speed::factor() const {
-  if (passes < 1 || !(foretold > 0)) return 1;
-  const double own = 1 / static_cast<double>(passes + 1);
-  return own + (1 - own) * seconds / foretold;
+double Speed::factor(double otherwise, double worth) const {
+  if (passes < 1 || !(foretold > 0)) return otherwise;
+  const double other = worth / (static_cast<double>(passes) + worth);
+  return other * otherwise + (1 - other) * seconds / foretold;
 }
 
 absl::StatusOr<PlannedPasses> replanned(const JobSpec& spec, const std::vector<std::vector<MixCost>>& pilot,
@@ -140,7 +152,9 @@ absl::StatusOr<PlannedPasses> replanned(const JobSpec& spec, const std::vector<s
   for (size_t m = 0; m < spec.mixes.size(); ++m) {
     const std::vector<int64_t> sure = sure_passes(plan, tiles.size(), m);
     if (!spec.mixes[m].automatic) {
-      ASSIGN_OR_RETURN(const int64_t passes, passes_for_seconds(budget, pilot, m, common.factor()));
+      ASSIGN_OR_RETURN(
+          const int64_t passes,
+          passes_for_seconds(budget, pilot, m, measured[m].speed.factor(common.factor(), kRatioPasses)));
       next.passes.push_back(std::max(passes, sure[0]));
       continue;
     }

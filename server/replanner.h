@@ -23,18 +23,19 @@ double expected_repilot_seconds(const JobSpec& spec);
 struct Speed {
   int64_t passes = 0;
   double seconds = 0, foretold = 0;  ///< of these passes
-  /// Seconds now per second of the pilot. Few passes are noisy by about as much as machines drift: the
-  /// pilot's own word counts as one more of them.
-  double factor() const;
+  /// Seconds now per second of the pilot. Few passes are noisy by about as much as machines drift: what would
+  /// be believed without them counts as `worth` more of them.
+  double factor(double otherwise = 1, double worth = 1) const;
 };
 
 /// Costs of the run task with this index; null if its result is not here.
 using CostsOf = std::function<const std::vector<MixCost>*(uint64_t)>;
 
-/// The plan after the next open border: S = (passes × pilot's seconds per pass) × factor, with one factor for
-/// all mixes that are not automatic, whose ratio to each other the pilot knows, and one for each automatic
-/// mix. Of that the budget also pays pilot and repeated passes. Nowhere fewer passes than are rendered at the
-/// border. Requires an open border. Internal if a pilot has measured nothing.
+/// The plan after the next open border: S = (passes × pilot's seconds per pass) × factor, with a factor for
+/// each mix. Mixes that are not automatic drift alike, and the pilot knows their ratio: their factors are
+/// drawn towards what all of them say together. Of `auto` the budget also pays pilot and repeated passes.
+/// Nowhere fewer passes than are rendered at the border. Requires an open border. Internal if a pilot has
+/// measured nothing.
 absl::StatusOr<PlannedPasses> replanned(const JobSpec& spec, const std::vector<std::vector<MixCost>>& pilot,
                                         const PlannedPasses& planned, const CostsOf& costs);
 

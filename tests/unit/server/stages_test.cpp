@@ -90,7 +90,9 @@ TEST(Stages, PassesAscendInWholeGroupsWhateverIsPlannedAnew) {
         for (int i = 1; i <= 64; ++i) {
           const int64_t passes = passes_at(i / 64., stages, group);
           EXPECT_GE(passes, before);
-          if (i < 64) EXPECT_TRUE(passes % group == 0 || passes == second) << passes;
+          if (i < 64) {
+            EXPECT_TRUE(passes % group == 0 || passes == second) << passes;
+          }
           before = passes;
         }
         EXPECT_EQ(before, second);
@@ -165,7 +167,8 @@ TEST(Replanner, RepeatedPassesAreFewAndReachEveryTileAndMix) {
       kept += task.passes[m].count();
     }
   }
-  EXPECT_NEAR(static_cast<double>(repeated) / static_cast<double>(kept), 0.03, 0.003);
+  EXPECT_NEAR(static_cast<double>(repeated), 2 * 60, 6);
+  EXPECT_LT(static_cast<double>(repeated) / static_cast<double>(kept), 0.05);
   for (const auto& mixes : per)
     for (const int64_t count : mixes) EXPECT_GT(count, 3);
 }
@@ -219,7 +222,7 @@ TEST(Replanner, AutoSpendsItsBudgetOnAllThatIsItsOwn) {
     for (uint64_t i = 0; i < task_count(plan, tiles_of(spec)); ++i)
       for (const PassRange& range : run_task(spec, plan, tiles_of(spec), 0, i).repilot)
         seconds += static_cast<double>(range.count()) * kPassSeconds * slow;
-    EXPECT_NEAR(seconds, 20, 0.1) << slow;
+    EXPECT_NEAR(seconds, 20, 0.2) << slow;  // a word of the pilot's own is left
   }
 }
 
