@@ -167,7 +167,9 @@ TEST(Replanner, RepeatedPassesAreFewAndReachEveryTileAndMix) {
       kept += task.passes[m].count();
     }
   }
-  EXPECT_NEAR(static_cast<double>(repeated), 2 * 60, 6);
+  // 60 of each mix, were the border not moved down to whole groups.
+  EXPECT_LE(repeated, 2 * 60);
+  EXPECT_GE(repeated, 2 * 40);
   EXPECT_LT(static_cast<double>(repeated) / static_cast<double>(kept), 0.05);
   for (const auto& mixes : per)
     for (const int64_t count : mixes) EXPECT_GT(count, 3);
