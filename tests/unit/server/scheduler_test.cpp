@@ -117,8 +117,8 @@ TEST_F(SchedulerTest, ThePilotDecidesThePasses) {
   EXPECT_EQ(summary.mixes[0].passes, 100);
   EXPECT_EQ(summary.mixes[0].checkpoints.back().passes, 100);
   EXPECT_NEAR(summary.mixes[0].checkpoints.back().cpu_seconds, summary.mixes[0].cpu_seconds, 1e-12);
-  // Two tiles in the pilot, and three of its passes repeated within the run.
-  EXPECT_NEAR(summary.mixes[0].pilot_cpu_seconds, 0.02 + 3 * 0.005, 1e-12);
+  // Two tiles in the pilot, and six of its passes repeated within the run.
+  EXPECT_NEAR(summary.mixes[0].pilot_cpu_seconds, 0.02 + 6 * 0.005, 1e-12);
   ASSERT_EQ(summary.workers.size(), 1u);
   EXPECT_EQ(summary.tiles.size(), 4u);  // 2 tiles × 2 mixes, one worker
 }
