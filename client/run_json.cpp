@@ -28,15 +28,18 @@ Json budget_ratio(const RunSummary& summary, const MixSummary& mix) {
 Json timeline_json(const MixSummary& mix, const MixRecord& record) {
   Json timeline = Json::array();
   for (size_t i = 0; i < mix.checkpoints.size(); ++i) {
+    // Boundaries are common to all mixes: a slow one may have nothing yet, or nothing new, at some of them.
+    const int64_t passes = mix.checkpoints[i].passes;
+    if (passes == 0 || (i + 1 < mix.checkpoints.size() && mix.checkpoints[i + 1].passes == passes)) continue;
     CheckpointError error;
     if (i < record.checkpoints.size()) error = record.checkpoints[i];
     // The last point is the final image, whose own groups of passes say most.
-    if (i + 1 == mix.checkpoints.size() && record.own_error && mix.checkpoints[i].passes == mix.passes) {
+    if (i + 1 == mix.checkpoints.size() && record.own_error && passes == mix.passes) {
       error.estimated_relmse = record.own_error->relmse;
       error.estimated_relmse_ci = record.own_error->relmse_ci;
     }
     timeline.push_back({{"cpu_seconds", mix.checkpoints[i].cpu_seconds},
-                        {"passes", mix.checkpoints[i].passes},
+                        {"passes", passes},
                         {"relmse", or_null(error.relmse)},
                         {"relmse_ci", interval_json(error.relmse_ci)},
                         {"estimated_relmse", or_null(error.estimated_relmse)},

@@ -22,6 +22,8 @@ install_packages() {
 
 # build TARGETS…: configures the release preset once and builds (everything without targets).
 build() {
+  # Another clone of the same sources, wherever it lies, finds what this one has compiled.
+  export CCACHE_BASEDIR="${CCACHE_BASEDIR:-$root}" CCACHE_NOHASHDIR="${CCACHE_NOHASHDIR:-1}"
   step "Building into build/ ($(nproc) cores; ccache makes the next time short)"
   cd "$root"
   cmake --preset release >"$root/.configure.log" 2>&1 || { cat "$root/.configure.log" >&2; exit 1; }

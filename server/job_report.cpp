@@ -63,6 +63,28 @@ void add_pilot(const JobRecord& job, std::vector<MixSummary>& mixes) {
     if (mix.mix.automatic) mix.cpu_seconds = mix.pilot_cpu_seconds;
 }
 
+std::vector<TileRow> tile_rows(const JobRecord& job) {
+  std::map<std::tuple<size_t, size_t, std::string>, TileRow> rows;  // (tile, mix, worker)
+  for_each_result(job, TaskKind::kRun, [&](uint64_t id, const AcceptedResult& result) {
+    const size_t tile = (id - job.first_run_id()) % job.tiles().size();
+    for (size_t m = 0; m < result.costs.size(); ++m) {
+      TileRow& row = rows[{tile, m, result.worker}];
+      row.rect = job.tiles()[tile];
+      row.mix = static_cast<int>(m);
+      row.worker = result.worker;
+      row.passes += result.costs[m].passes;
+      row.cpu_seconds += result.costs[m].cpu_seconds;
+      row.calibration += result.costs[m].calibration;
+    }
+  });
+  std::vector<TileRow> out;
+  out.reserve(rows.size());
+  for (auto& [key, row] : rows) out.push_back(std::move(row));
+  return out;
+}
+
+}  // namespace
+
 std::vector<MixSummary> mix_summaries(const JobRecord& job) {
   std::vector<MixSummary> mixes(job.spec().mixes.size());
   for (size_t m = 0; m < mixes.size(); ++m) {
@@ -105,28 +127,6 @@ std::vector<MixSummary> mix_summaries(const JobRecord& job) {
   }
   return mixes;
 }
-
-std::vector<TileRow> tile_rows(const JobRecord& job) {
-  std::map<std::tuple<size_t, size_t, std::string>, TileRow> rows;  // (tile, mix, worker)
-  for_each_result(job, TaskKind::kRun, [&](uint64_t id, const AcceptedResult& result) {
-    const size_t tile = (id - job.first_run_id()) % job.tiles().size();
-    for (size_t m = 0; m < result.costs.size(); ++m) {
-      TileRow& row = rows[{tile, m, result.worker}];
-      row.rect = job.tiles()[tile];
-      row.mix = static_cast<int>(m);
-      row.worker = result.worker;
-      row.passes += result.costs[m].passes;
-      row.cpu_seconds += result.costs[m].cpu_seconds;
-      row.calibration += result.costs[m].calibration;
-    }
-  });
-  std::vector<TileRow> out;
-  out.reserve(rows.size());
-  for (auto& [key, row] : rows) out.push_back(std::move(row));
-  return out;
-}
-
-}  // namespace
 
 double scheduler_cpu_seconds(const JobRecord& job, const Now& now) {
   const double running = job.final() ? 0 : now.process_cpu - job.scheduler_cpu_base;

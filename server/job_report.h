@@ -13,6 +13,9 @@ JobStatus status_of(const Scheduler& scheduler, const JobRecord& job, const Now&
 /// Costs, checkpoints and rows of everything accepted so far.
 RunSummary summary_of(const Scheduler& scheduler, const JobRecord& job, const Now& now);
 
+/// Its mixes alone: without the rows of tiles, so that it may be asked for once a second.
+std::vector<MixSummary> mix_summaries(const JobRecord& job);
+
 /// CPU seconds of the server process from the job's submission to its end, or until now.
 double scheduler_cpu_seconds(const JobRecord& job, const Now& now);
 

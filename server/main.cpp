@@ -13,6 +13,7 @@
 #include "proto/status.h"
 #include "server/blobs_service.h"
 #include "server/coordinator.h"
+#include "server/http_pages.h"
 #include "server/listener.h"
 #include "server/render_service.h"
 #include "server/retention.h"
@@ -29,6 +30,7 @@ struct Options {
   ListenOptions listen{.address = "127.0.0.1:7400", .credentials = {}, .tokens = {}};
   std::string store;
   std::string address_file;
+  std::string http;
   std::string log_level = "info";
   bool ephemeral = false;
   BlobLimits blobs;
@@ -62,6 +64,8 @@ void add_flags(CLI::App& app, Options& options) {
   app.add_flag("--ephemeral", options.ephemeral,
                "flush nothing to disk: for a store that need not survive the loss of power");
   app.add_option("--address-file", options.address_file, "file to write the bound HOST:PORT to");
+  app.add_option("--http", options.http,
+                 "HOST:PORT of the dashboard, /metrics and /healthz; port 0 takes a free one");
   app.add_option("--tls-cert", options.listen.credentials.cert, "server certificate, PEM");
   app.add_option("--tls-key", options.listen.credentials.key, "its private key, PEM");
   app.add_option("--tls-ca", options.listen.credentials.ca,
@@ -130,6 +134,15 @@ absl::Status serve(Options options) {
   WorkerService worker_service(coordinator);
   ASSIGN_OR_RETURN(Listener listener,
                    listen(options.listen, {&blobs_service, &render_service, &worker_service}));
+  HttpPages pages(coordinator);
+  HttpServer http;
+  if (!options.http.empty()) {
+    ListenOptions http_options = options.listen;
+    http_options.address = options.http;
+    ASSIGN_OR_RETURN(http, HttpServer::start(std::move(http_options),
+                                             [&](const HttpRequest& request) { return pages.answer(request); }));
+    spdlog::info("dashboard on {}", http.url());
+  }
   if (!options.address_file.empty())
     RETURN_IF_ERROR(write_file_atomically(options.address_file, listener.address + "\n"));
   spdlog::info("listening on {}, store {}", listener.address, options.store);

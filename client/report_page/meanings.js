@@ -7,7 +7,7 @@ const meanings = {
   budget_ratio: "CPU seconds spent over the CPU seconds asked for. 1 is exact; passes are whole, so half a pass is the least that can be missed.",
   pilot: "CPU seconds of the pilot, which measures the cost of a pass. Its samples are discarded. For fixed mixes it is not part of CPU s; for auto it is.",
   relmse: "Relative mean squared error: mean over pixels and channels of (I−R)²/(R²+0.01), I the image, R the reference. Raw: the reference's floor is not subtracted.",
-  relmse_ci: "95 % interval from resampling 16×16 blocks of pixels. It answers for other views of the like as well as for other seeds, so it is wide for seeds alone.",
+  relmse_ci: "95 % interval: what relMSE other seeds would give. From the scatter of the errors within cells of 2×2 pixels, which share no samples.",
   estimated_relmse: "What relMSE the run itself expects, for want of a reference: mean over pixels and channels of v/(S²+0.01), v the variance of the mean between "
     + "independent groups of passes, S the image averaged over 5×5 pixels. Blind to bias and to bright paths that no sample found.",
   trimmed_relmse: "relMSE without the worst 0.1 % of pixels: the error without its fireflies.",

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "film/frame.h"
+#include "proto/auto_plan.h"
 #include "scenes/parser.h"
 
 namespace penumbra::test {
@@ -33,6 +34,8 @@ Rendered render(const Scene& scene, const JobSpec& job, int64_t group) {
       for (int64_t passes : job.plan) task.passes.push_back({0, passes});
       task.group = group;
       task.shuffle = tasks.size();
+      for (const int m : automatic_mixes(job.mixes))
+        task.chosen.push_back({m, auto_candidates()[tasks.size() % auto_candidates().size()], group});
       tasks.push_back(task);
     }
   std::vector<TaskOutcome> outcomes(tasks.size());

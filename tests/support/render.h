@@ -18,7 +18,7 @@ struct Rendered {
   std::vector<MixCost> costs;
 };
 
-/// Renders all tiles on two threads; groups of `group` passes.
+/// Renders all tiles on two threads; groups of `group` passes. Of a mix `auto`, each tile takes the next candidate.
 Rendered render(const Scene& scene, const JobSpec& job, int64_t group = 1);
 
 /// Loads a scene file; a failure fails the test and returns null.

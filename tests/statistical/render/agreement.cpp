@@ -38,6 +38,7 @@ void expect_agreement(const ScenePtr& scene, const std::vector<std::string>& mix
   ASSERT_TRUE(scene);
   JobSpec spec = job(how.width, how.height, mixes, how.passes);
   spec.sampler = how.sampler;
+  spec.tile = how.tile;
   spec.max_depth = 3;
   if (how.crop.x1 > how.crop.x0) spec.crop = how.crop;
   const Rendered rendered = render(*scene, spec, how.group);

@@ -11,6 +11,7 @@ namespace penumbra::test {
 struct AgreementSpec {
   int width = 64, height = 48;
   int64_t passes = 64, group = 1;
+  int tile = 64;
   SamplerKind sampler = SamplerKind::kIndependent;
   PixelRect crop{0, 0, 0, 0};  ///< where the pictures are compared; empty: everywhere
 };

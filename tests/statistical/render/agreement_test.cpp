@@ -41,6 +41,15 @@ TEST(Agreement, RectangleLight) {
                    64);
 }
 
+/// Whatever a plan chooses: here each tile has another candidate of `auto`.
+TEST(Agreement, AutoWithADifferentCandidateInEveryTile) {
+  test::AgreementSpec how;
+  how.passes = 64;
+  how.tile = 16;
+  test::expect_agreement(test::load_text(kHead + kBlocker + area_light(kQuad)), {"auto", "sa:4", "bsdf:2+line-sa@u:2"},
+                         how);
+}
+
 TEST(Agreement, StratifiedAndSobolSamplers) {
   for (SamplerKind sampler : {SamplerKind::kStratified, SamplerKind::kSobol})
     expect_agreement(test::load_text(kHead + kBlocker + area_light(kQuad)),

@@ -104,6 +104,14 @@ TEST_F(Commands, GateTellsPassFromWorse) {
   EXPECT_EQ(run("gate now/run.json --baseline kept.json" + cpu).code, 0);
 }
 
+TEST_F(Commands, AnUnknownCommandIsNamed) {
+  const Said said = run("rendr " + kScene);
+  EXPECT_EQ(said.code, 2);
+  EXPECT_THAT(said.out, HasSubstr("'rendr'"));
+  EXPECT_EQ(run("").code, 2);
+  EXPECT_EQ(run("--help").code, 0);
+}
+
 TEST_F(Commands, GateRefusesBadUsage) {
   render_reference();
   ASSERT_EQ(render("--spp 4 --out now").code, 0);

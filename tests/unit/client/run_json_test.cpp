@@ -48,6 +48,20 @@ TEST(RunJson, HasTheInterfacesKeys) {
   EXPECT_EQ(mix["timeline"][1]["estimated_relmse_ci"], Json::array({0.35, 0.55}));
 }
 
+TEST(RunJson, ATimelineHasNoPointWithoutNewPasses) {
+  RunRecord run = sample_run();
+  std::vector<Checkpoint>& points = run.summary.mixes[1].checkpoints;
+  ASSERT_EQ(points.size(), 2u);
+  points.insert(points.begin(), points[0]);
+  points.insert(points.begin(), points[0]);
+  points[0].passes = 0;
+  run.mixes[1].checkpoints.clear();
+  const Json timeline = run_json(run)["mixes"][1]["timeline"];
+  ASSERT_EQ(timeline.size(), 2u);
+  EXPECT_EQ(timeline[0]["passes"], 16);
+  EXPECT_GT(timeline[1]["passes"], 16);
+}
+
 TEST(RunJson, WhatDoesNotApplyIsNull) {
   RunRecord run = sample_run();
   run.summary.spec.budget = SppBudget{64};
