@@ -15,7 +15,7 @@ namespace {
 constexpr double kRepilotPasses = 60;
 constexpr double kLeastRepilotShare = 0.02, kMostRepilotShare = 0.05;
 // The pilot's ratio between mixes is about as sure as that of so many repeated passes.
-constexpr double kRatioPasses = 6;
+constexpr double kRatioPasses = 30;
 // Nothing is decided any more after the border before the last.
 constexpr double kRepilotUntil = kStageBorders[std::size(kStageBorders) - 2];
 
