@@ -62,4 +62,29 @@ absl::StatusOr<std::vector<AutoPlan>> auto_plans_from_json(const Json& json, con
   return plans;
 }
 
+Json earlier_plans_json(const std::vector<EarlierPlan>& plans) {
+  Json out = Json::array();
+  for (const EarlierPlan& plan : plans)
+    out.push_back({{"until", plan.until}, {"passes", plan.passes}, {"autos", plan.autos}});
+  return out;
+}
+
+absl::StatusOr<std::vector<EarlierPlan>> earlier_plans_from_json(const Json& json, const JobSpec& spec) {
+  std::vector<EarlierPlan> plans;
+  const size_t tiles = tiles_of(spec).size();
+  try {
+    for (const Json& one : json)
+      plans.push_back({one.at("until").get<double>(), one.at("passes").get<std::vector<int64_t>>(),
+                       one.at("autos").get<std::vector<std::vector<int64_t>>>()});
+  } catch (const Json::exception& fault) {
+    return invalid_input("earlier_plans: {}", fault.what());
+  }
+  for (const EarlierPlan& plan : plans)
+    for (const std::vector<int64_t>& passes : plan.autos)
+      if (passes.size() != tiles)
+        return invalid_input("earlier_plans: {} tiles, where the job has {}", passes.size(), tiles);
+  RETURN_IF_ERROR(check_earlier_plans(plans, spec.mixes));
+  return plans;
+}
+
 }  // namespace penumbra

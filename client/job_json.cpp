@@ -55,6 +55,9 @@ absl::StatusOr<JobSpec> read(const Json& json) {
   if (json.contains("auto_plans")) {
     ASSIGN_OR_RETURN(spec.auto_plans, auto_plans_from_json(json["auto_plans"], spec));
   }
+  if (json.contains("earlier_plans")) {
+    ASSIGN_OR_RETURN(spec.earlier_plans, earlier_plans_from_json(json["earlier_plans"], spec));
+  }
   return spec;
 }
 
@@ -96,6 +99,7 @@ Json to_json(const JobSpec& spec) {
           {"strict", spec.strict},
           {"plan", spec.plan},
           {"auto_plans", auto_plans_json(spec, spec.auto_plans)},
+          {"earlier_plans", earlier_plans_json(spec.earlier_plans)},
           {"reference", spec.reference},
           {"regions", regions}};
 }

@@ -177,6 +177,7 @@ Json run_json(const RunRecord& run) {
           {"calibration", calibration_json(total_calibration(s))},
           {"plan", plan_json(s)},
           {"auto_plans", auto_plans_json(s.spec, s.auto_plans)},
+          {"earlier_plans", earlier_plans_json(s.earlier_plans)},
           {"spec", to_json(s.spec)}};
 }
 
@@ -191,6 +192,10 @@ absl::StatusOr<JobSpec> replay_spec(const Json& run) {
   }
   if (run.contains("auto_plans")) {
     ASSIGN_OR_RETURN(spec.auto_plans, auto_plans_from_json(run["auto_plans"], spec));
+  }
+  // Absent where the run had no stages, or an earlier version wrote the file.
+  if (run.contains("earlier_plans")) {
+    ASSIGN_OR_RETURN(spec.earlier_plans, earlier_plans_from_json(run["earlier_plans"], spec));
   }
   if (spec.auto_plans.empty() && !automatic_mixes(spec.mixes).empty())
     return invalid_input("auto_plans: none; the run ended before `auto` was planned");

@@ -31,7 +31,7 @@ struct RunRecord {
 };
 
 /// The run as the interface's schema 1, and more keys: `partial`, `state`, `reference`, `plan` (passes per
-/// mix), `auto_plans` (client/auto_plan_json.h), `spec` (enough to replay), `warnings`, `tiles`, `workers`,
+/// mix), `auto_plans` and `earlier_plans` (client/auto_plan_json.h), `spec` (enough to replay), `warnings`, `tiles`, `workers`,
 /// times of the phases; for `gate` the `calibration` (proto/job.h) of run, mixes and tiles, and each mix's
 /// `error_blocks`: relMSE of every block of a grid over the crop, row by row, `edge` pixels wide. `estimated_relmse`
 /// and its interval, of the final image and along the timeline: what relMSE the run itself expects

@@ -35,4 +35,18 @@ absl::Status check_auto_plans(const std::vector<AutoPlan>& plans, const std::vec
   return absl::OkStatus();
 }
 
+absl::Status check_earlier_plans(const std::vector<EarlierPlan>& plans, const std::vector<Mix>& mixes) {
+  double before = 0;
+  for (const EarlierPlan& plan : plans) {
+    if (!(plan.until > before) || !(plan.until < 1))
+      return invalid_input("earlier_plans: a border at {}, where one in ({}, 1) belongs", plan.until, before);
+    before = plan.until;
+    if (plan.passes.size() != mixes.size() || plan.autos.size() != automatic_mixes(mixes).size())
+      return invalid_input(
+          "earlier_plans: counts of {} mixes, {} of them `auto`, where the job has {} and {}",
+          plan.passes.size(), plan.autos.size(), mixes.size(), automatic_mixes(mixes).size());
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace penumbra

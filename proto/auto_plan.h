@@ -18,4 +18,7 @@ std::vector<int> automatic_mixes(const std::vector<Mix>& mixes);
 /// InvalidArgument unless there is no plan at all, or one for each automatic mix, in their order.
 absl::Status check_auto_plans(const std::vector<AutoPlan>& plans, const std::vector<Mix>& mixes);
 
+/// Borders ascend within (0,1); counts are one per mix, and lists of tiles one per automatic mix.
+absl::Status check_earlier_plans(const std::vector<EarlierPlan>& plans, const std::vector<Mix>& mixes);
+
 }  // namespace penumbra

@@ -172,6 +172,7 @@ v1::JobSpec to_proto(const JobSpec& spec) {
   out.set_strict(spec.strict);
   out.mutable_plan()->Add(spec.plan.begin(), spec.plan.end());
   for (const AutoPlan& plan : spec.auto_plans) *out.add_auto_plans() = to_proto(plan);
+  for (const EarlierPlan& plan : spec.earlier_plans) *out.add_earlier_plans() = to_proto(plan);
   out.set_reference(spec.reference);
   for (const Region& region : spec.regions) {
     v1::Region* added = out.add_regions();
@@ -203,6 +204,9 @@ absl::StatusOr<JobSpec> from_proto(const v1::JobSpec& message) {
   ASSIGN_OR_RETURN(spec.auto_plans, auto_plans_from_proto(message.auto_plans(), spec.mixes));
   if (spec.plan.empty() != spec.auto_plans.empty() && !automatic_mixes(spec.mixes).empty())
     return invalid_input("plan: passes and the plans of `auto` belong together");
+  ASSIGN_OR_RETURN(spec.earlier_plans, earlier_plans_from_proto(message.earlier_plans(), spec.mixes));
+  if (spec.plan.empty() && !spec.earlier_plans.empty())
+    return invalid_input("earlier_plans: there is no plan that they were before");
   spec.reference = message.reference();
   ASSIGN_OR_RETURN(spec.regions, regions_from_proto(message));
   if (message.has_probe()) {
@@ -214,21 +218,31 @@ absl::StatusOr<JobSpec> from_proto(const v1::JobSpec& message) {
   return spec;
 }
 
+static v1::PassRange to_proto(const PassRange& range) {
+  v1::PassRange out;
+  out.set_begin(range.begin);
+  out.set_end(range.end);
+  return out;
+}
+
+static absl::StatusOr<PassRange> from_proto(const v1::PassRange& message) {
+  RETURN_IF_ERROR(check_range<int64_t>("passes.begin", message.begin(), 0, kMostPasses));
+  RETURN_IF_ERROR(check_range<int64_t>("passes.end", message.end(), message.begin(), kMostPasses));
+  return PassRange{message.begin(), message.end()};
+}
+
 v1::TileTask to_proto(const TileTask& task) {
   v1::TileTask out;
   out.set_id(task.id);
   out.set_kind(task.kind == TaskKind::kPilot ? v1::TASK_KIND_PILOT : v1::TASK_KIND_RUN);
   *out.mutable_tile() = to_proto(task.tile);
-  for (const PassRange& range : task.passes) {
-    v1::PassRange* added = out.add_passes();
-    added->set_begin(range.begin);
-    added->set_end(range.end);
-  }
+  for (const PassRange& range : task.passes) *out.add_passes() = to_proto(range);
   out.set_group(task.group);
   out.set_shuffle(task.shuffle);
   out.set_pilot_seconds(task.pilot_seconds);
   for (const ChosenMix& chosen : task.chosen) *out.add_chosen() = to_proto(chosen);
   out.set_pilot_blocks(task.pilot_blocks);
+  for (const PassRange& range : task.repilot) *out.add_repilot() = to_proto(range);
   return out;
 }
 
@@ -242,9 +256,8 @@ absl::StatusOr<TileTask> from_proto(const v1::TileTask& message) {
   if (task.tile.area() == 0) return invalid_input("tile: empty");
   RETURN_IF_ERROR(check_range("passes", message.passes_size(), 1, kMostMixes));
   for (const v1::PassRange& range : message.passes()) {
-    RETURN_IF_ERROR(check_range<int64_t>("passes.begin", range.begin(), 0, kMostPasses));
-    RETURN_IF_ERROR(check_range<int64_t>("passes.end", range.end(), range.begin(), kMostPasses));
-    task.passes.push_back({range.begin(), range.end()});
+    ASSIGN_OR_RETURN(const PassRange converted, from_proto(range));
+    task.passes.push_back(converted);
   }
   RETURN_IF_ERROR(check_range<int64_t>("group", message.group(), 1, kMostPasses));
   task.group = message.group();
@@ -256,6 +269,12 @@ absl::StatusOr<TileTask> from_proto(const v1::TileTask& message) {
     RETURN_IF_ERROR(check_range("chosen.mix", chosen.mix, 0, message.passes_size() - 1));
   RETURN_IF_ERROR(check_range("pilot_blocks", message.pilot_blocks(), 0, kMostTile * kMostTile));
   task.pilot_blocks = message.pilot_blocks();
+  for (const v1::PassRange& range : message.repilot()) {
+    ASSIGN_OR_RETURN(const PassRange converted, from_proto(range));
+    task.repilot.push_back(converted);
+  }
+  if (!task.repilot.empty() && task.repilot.size() != task.passes.size())
+    return invalid_input("repilot: {} ranges for {} mixes", task.repilot.size(), task.passes.size());
   return task;
 }
 

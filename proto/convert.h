@@ -40,6 +40,10 @@ absl::StatusOr<Probe> from_proto(const v1::Probe& probe);
 absl::StatusOr<JobSpec> from_proto(const v1::JobSpec& spec);
 absl::StatusOr<AutoPlan> from_proto(const v1::AutoPlan& plan);
 /// All plans of a job with these mixes: none, or one for each `auto`.
+v1::EarlierPlan to_proto(const EarlierPlan& plan);
+/// Counts per mix must fit; whether counts per tile do is known only with the tiles.
+absl::StatusOr<std::vector<EarlierPlan>> earlier_plans_from_proto(
+    const google::protobuf::RepeatedPtrField<v1::EarlierPlan>& plans, const std::vector<Mix>& mixes);
 absl::StatusOr<std::vector<AutoPlan>> auto_plans_from_proto(
     const google::protobuf::RepeatedPtrField<v1::AutoPlan>& plans, const std::vector<Mix>& mixes);
 absl::StatusOr<ChosenMix> from_proto(const v1::ChosenMix& chosen);

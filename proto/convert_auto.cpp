@@ -1,4 +1,5 @@
 // What an `auto` mix is planned to be, and what stands for it in a task.
+#include "proto/auto_plan.h"
 #include "proto/convert.h"
 #include "proto/convert_check.h"
 
@@ -6,6 +7,8 @@ namespace penumbra {
 
 // More candidates than this would cost more to measure than they could save.
 constexpr int kMostCandidates = 256;
+// Stages are few (server/stages.h).
+constexpr int kMostEarlierPlans = 16;
 
 static absl::StatusOr<Mix> fixed_mix(std::string_view field, const std::string& text) {
   RETURN_IF_ERROR(check_text(field, text));
@@ -48,6 +51,33 @@ absl::StatusOr<std::vector<AutoPlan>> auto_plans_from_proto(
     const google::protobuf::RepeatedPtrField<v1::AutoPlan>& plans, const std::vector<Mix>& mixes) {
   ASSIGN_OR_RETURN(std::vector<AutoPlan> out, list_from_proto<AutoPlan>("auto_plans", plans));
   RETURN_IF_ERROR(check_auto_plans(out, mixes));
+  return out;
+}
+
+v1::EarlierPlan to_proto(const EarlierPlan& plan) {
+  v1::EarlierPlan out;
+  out.set_until(plan.until);
+  out.mutable_passes()->Add(plan.passes.begin(), plan.passes.end());
+  for (const std::vector<int64_t>& tiles : plan.autos)
+    out.add_autos()->mutable_passes()->Add(tiles.begin(), tiles.end());
+  return out;
+}
+
+absl::StatusOr<std::vector<EarlierPlan>> earlier_plans_from_proto(
+    const google::protobuf::RepeatedPtrField<v1::EarlierPlan>& plans, const std::vector<Mix>& mixes) {
+  RETURN_IF_ERROR(check_range("earlier_plans", plans.size(), 0, kMostEarlierPlans));
+  std::vector<EarlierPlan> out;
+  for (const v1::EarlierPlan& message : plans) {
+    EarlierPlan plan;
+    plan.until = message.until();
+    ASSIGN_OR_RETURN(plan.passes, passes_from_proto("earlier_plans.passes", message.passes()));
+    for (const v1::EarlierPlan::TilePasses& tiles : message.autos()) {
+      ASSIGN_OR_RETURN(std::vector<int64_t> passes, passes_from_proto("earlier_plans.autos", tiles.passes()));
+      plan.autos.push_back(std::move(passes));
+    }
+    out.push_back(std::move(plan));
+  }
+  RETURN_IF_ERROR(check_earlier_plans(out, mixes));
   return out;
 }
 

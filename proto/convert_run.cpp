@@ -160,6 +160,8 @@ v1::MixCost to_proto(const MixCost& cost) {
   out.set_relative_variance_squares(cost.relative_variance_squares);
   out.set_work(cost.work);
   out.set_overhead_seconds(cost.overhead_seconds);
+  out.set_repilot_passes(cost.repilot_passes);
+  out.set_repilot_seconds(cost.repilot_seconds);
   return out;
 }
 
@@ -171,6 +173,8 @@ absl::StatusOr<MixCost> from_proto(const v1::MixCost& message) {
   RETURN_IF_ERROR(check_amount("costs.relative_variance_squares", message.relative_variance_squares()));
   RETURN_IF_ERROR(check_amount("costs.work", message.work()));
   RETURN_IF_ERROR(check_amount("costs.overhead_seconds", message.overhead_seconds()));
+  RETURN_IF_ERROR(check_range<int64_t>("costs.repilot_passes", message.repilot_passes(), 0, kMostPasses));
+  RETURN_IF_ERROR(check_amount("costs.repilot_seconds", message.repilot_seconds()));
   MixCost cost;
   ASSIGN_OR_RETURN(cost.calibration, from_proto(message.calibration()));
   cost.passes = message.passes();
@@ -183,6 +187,8 @@ absl::StatusOr<MixCost> from_proto(const v1::MixCost& message) {
   cost.relative_variance_squares = message.relative_variance_squares();
   cost.work = message.work();
   cost.overhead_seconds = message.overhead_seconds();
+  cost.repilot_passes = message.repilot_passes();
+  cost.repilot_seconds = message.repilot_seconds();
   return cost;
 }
 
@@ -362,6 +368,7 @@ v1::RunSummary to_proto(const RunSummary& summary) {
   out.set_total_wall_seconds(summary.total_wall_seconds);
   out.set_first_result_seconds(summary.first_result_seconds);
   for (const AutoPlan& plan : summary.auto_plans) *out.add_auto_plans() = to_proto(plan);
+  for (const EarlierPlan& plan : summary.earlier_plans) *out.add_earlier_plans() = to_proto(plan);
   return out;
 }
 
@@ -373,6 +380,8 @@ absl::StatusOr<RunSummary> from_proto(const v1::RunSummary& message) {
   if (summary.mixes.size() != summary.spec.mixes.size())
     return invalid_input("mixes: {} summaries for {} mixes", summary.mixes.size(), summary.spec.mixes.size());
   ASSIGN_OR_RETURN(summary.auto_plans, auto_plans_from_proto(message.auto_plans(), summary.spec.mixes));
+  ASSIGN_OR_RETURN(summary.earlier_plans,
+                   earlier_plans_from_proto(message.earlier_plans(), summary.spec.mixes));
   ASSIGN_OR_RETURN(summary.tiles, list_from_proto<TileRow>("tiles", message.tiles()));
   for (const TileRow& row : summary.tiles)
     RETURN_IF_ERROR(check_range("tiles.mix", row.mix, 0, static_cast<int>(summary.mixes.size()) - 1));

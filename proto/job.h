@@ -76,6 +76,15 @@ struct AutoPlan {
   bool operator==(const AutoPlan&) const = default;
 };
 
+/// What was planned of a run in stages before its present plan took over (server/stages.h). It still decides the
+/// passes up to its border.
+struct EarlierPlan {
+  double until = 0;                         ///< the border, as a share of all passes; in (0,1)
+  std::vector<int64_t> passes;              ///< totals as they were planned then: per mix, as JobSpec::plan
+  std::vector<std::vector<int64_t>> autos;  ///< of each automatic mix in their order: per tile
+  bool operator==(const EarlierPlan&) const = default;
+};
+
 /// Everything that decides a job's pixels, given the bundle's bytes.
 struct JobSpec {
   std::string scene;          ///< absolute path on the client's machine, for people
@@ -95,6 +104,7 @@ struct JobSpec {
   /// Passes per mix, fixed (replay); empty: from the budget. Of an automatic mix: the mean over the pixels.
   std::vector<int64_t> plan;
   std::vector<AutoPlan> auto_plans;  ///< with `plan`: one for each automatic mix, in their order
+  std::vector<EarlierPlan> earlier_plans;  ///< with `plan`, of a run in stages: borders ascend
   std::string reference;      ///< path on the client's machine, for people and `fetch`
   std::vector<Region> regions;
   std::optional<Probe> probe;
@@ -133,6 +143,9 @@ struct TileTask {
   /// measured on `pilot_blocks` small blocks of pixels (fewer where pilot_seconds per mix are up).
   std::vector<ChosenMix> chosen;
   int pilot_blocks = 0;
+  /// kRun: passes with the pilot's random numbers that are timed between the others and thrown away: what the
+  /// pilot's figures are worth by now. One per mix, or none at all.
+  std::vector<PassRange> repilot;
   bool operator==(const TileTask&) const = default;
 };
 
@@ -168,6 +181,9 @@ struct MixCost {
   /// machine with this instruction set.
   double work = 0;
   double overhead_seconds = 0;  ///< CPU time of the pilot's warming up, in no other figure
+  // Of a run task's passes that were thrown away (TileTask::repilot); in no other figure.
+  int64_t repilot_passes = 0;
+  double repilot_seconds = 0;
   bool operator==(const MixCost&) const = default;
 };
 

@@ -107,6 +107,7 @@ struct RunSummary {
   double total_wall_seconds = 0;
   double first_result_seconds = 0;
   std::vector<AutoPlan> auto_plans;  ///< one for each automatic mix, once planned
+  std::vector<EarlierPlan> earlier_plans;  ///< of a run in stages: what was planned before
   bool operator==(const RunSummary&) const = default;
 };
 

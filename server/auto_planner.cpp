@@ -230,7 +230,11 @@ std::vector<double> image_ratios(const std::vector<int>& candidates) {
   return out;
 }
 
-std::vector<Choice> choices(const Measurements& m, const std::vector<double>& areas, size_t columns) {
+std::vector<Choice> choices(const std::vector<PixelRect>& tiles, const Measurements& m) {
+  std::vector<double> areas;
+  for (const PixelRect& tile : tiles) areas.push_back(static_cast<double>(tile.area()));
+  const auto columns = static_cast<size_t>(std::count_if(
+      tiles.begin(), tiles.end(), [&](const PixelRect& tile) { return tile.y0 == tiles[0].y0; }));
   const std::vector<double> image = typical(m.variance, areas), image_cost = typical(m.cost, areas);
   const Table compared = comparable(m.variance, m.worth, image, image_ratios(m.candidates), columns);
   const Table variance = smoothed(m.variance, m.worth, image, columns);
@@ -300,15 +304,25 @@ std::vector<int64_t> rounded(const std::vector<Choice>& tiles, const std::vector
   return out;
 }
 
-std::vector<int64_t> passes_of(const JobSpec& spec, const std::vector<Choice>& tiles, double pilot_seconds) {
+/// Passes that spend `seconds` of the pilot's time, where some are rendered already.
+std::vector<int64_t> spending_passes(const std::vector<Choice>& tiles, double seconds,
+                                     const std::vector<int64_t>& least) {
+  const auto raised = [&](std::vector<double> passes) {
+    for (size_t t = 0; t < least.size(); ++t) passes[t] = std::max(passes[t], static_cast<double>(least[t]));
+    return passes;
+  };
+  return rounded(tiles, raised(solve(tiles, 1, [&](const std::vector<double>& passes) {
+                   return cost_of(tiles, raised(passes)) >= seconds;
+                 })));
+}
+
+std::vector<int64_t> passes_of(const JobSpec& spec, const std::vector<Choice>& tiles, double pilot_seconds,
+                               const AutoSpending& spending) {
   if (const auto* spp = std::get_if<SppBudget>(&spec.budget))
     return std::vector<int64_t>(tiles.size(), spp->passes);
-  if (const auto* cpu = std::get_if<CpuSecondsBudget>(&spec.budget)) {
-    const double seconds = cpu->seconds - pilot_seconds;
-    return rounded(tiles, solve(tiles, 1, [&](const std::vector<double>& passes) {
-                     return cost_of(tiles, passes) >= seconds;
-                   }));
-  }
+  if (const auto* cpu = std::get_if<CpuSecondsBudget>(&spec.budget))
+    return spending_passes(tiles, (cpu->seconds - pilot_seconds - spending.repilot_seconds) / spending.factor,
+                           spending.least);
   const double wanted =
       std::get<TargetErrorBudget>(spec.budget).relmse * 3 * static_cast<double>(spec.crop.area());
   std::vector<int64_t> out;
@@ -330,18 +344,23 @@ int pilot_blocks(const JobSpec& spec, const PixelRect& tile) {
 }
 
 absl::StatusOr<AutoPlan> plan_auto(const JobSpec& spec, const std::vector<PixelRect>& tiles,
-                                   const std::vector<std::vector<MixCost>>& pilot, size_t number) {
-  PENUMBRA_CHECK(pilot.size() == tiles.size());
+                                   const std::vector<std::vector<MixCost>>& pilot, size_t number,
+                                   const AutoSpending& spending) {
   ASSIGN_OR_RETURN(const Measurements m, measurements(spec, tiles, pilot, number));
-  std::vector<double> areas;
-  for (const PixelRect& tile : tiles) areas.push_back(static_cast<double>(tile.area()));
-  const auto columns = static_cast<size_t>(std::count_if(
-      tiles.begin(), tiles.end(), [&](const PixelRect& tile) { return tile.y0 == tiles[0].y0; }));
-  const std::vector<Choice> chosen = choices(m, areas, columns);
-  const std::vector<int64_t> passes = passes_of(spec, chosen, m.pilot_seconds);
+  const std::vector<Choice> chosen = choices(tiles, m);
+  const std::vector<int64_t> passes = passes_of(spec, chosen, m.pilot_seconds, spending);
   AutoPlan plan{automatic_mixes(spec.mixes)[number], auto_candidates(), {}};
   for (size_t t = 0; t < tiles.size(); ++t) plan.tiles.push_back({chosen[t].candidate, passes[t]});
   return plan;
+}
+
+absl::StatusOr<std::vector<double>> auto_pass_costs(const JobSpec& spec, const std::vector<PixelRect>& tiles,
+                                                    const std::vector<std::vector<MixCost>>& pilot,
+                                                    size_t number) {
+  ASSIGN_OR_RETURN(const Measurements m, measurements(spec, tiles, pilot, number));
+  std::vector<double> costs;
+  for (const Choice& choice : choices(tiles, m)) costs.push_back(choice.cost);
+  return costs;
 }
 
 }  // namespace penumbra

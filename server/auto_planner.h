@@ -20,13 +20,28 @@ inline constexpr uint64_t kCalibrationTiles = 8;
 /// Blocks of pixels that the pilot of a tile should measure, at most: what the budget allows.
 int pilot_blocks(const JobSpec& spec, const PixelRect& tile);
 
+/// What is known of a mix's spending besides its pilot.
+struct AutoSpending {
+  double factor = 1;                ///< seconds now per second of the pilot
+  double repilot_seconds = 0;       ///< what repeating parts of the pilot takes of the budget
+  std::vector<int64_t> least = {};  ///< passes that each tile has in any case; empty: none
+};
+
 /// The plan of the job's automatic mix number `number` among them. `pilot[tile]` are the costs of the pilot
 /// tasks: one per mix of the job (of an automatic mix: a whole pass of its first candidate in some tiles),
 /// then one per candidate of each automatic mix. CPU seconds S: the passes that, by the pilot's costs, take S
-/// less what the pilot took; at least one each. Target error E: the passes that bring Σ_t V_t / N_t down to E
-/// times pixels and channels; at least two each. Passes: as many in every tile; costs are counted work
-/// instead of seconds. Internal if a pilot has measured nothing.
+/// less what the pilot and its repetitions take; at least one each, and at least what is rendered already.
+/// Target error E: the passes that bring Σ_t V_t / N_t down to E times pixels and channels; at least two
+/// each. Passes: as many in every tile; costs are counted work instead of seconds. Internal if a pilot has
+/// measured nothing.
 absl::StatusOr<AutoPlan> plan_auto(const JobSpec& spec, const std::vector<PixelRect>& tiles,
-                                   const std::vector<std::vector<MixCost>>& pilot, size_t number);
+                                   const std::vector<std::vector<MixCost>>& pilot, size_t number,
+                                   const AutoSpending& spending = {});
+
+/// Seconds of the pilot (with a budget of passes: units of work) for a pass of what each tile does in that
+/// plan.
+absl::StatusOr<std::vector<double>> auto_pass_costs(const JobSpec& spec, const std::vector<PixelRect>& tiles,
+                                                    const std::vector<std::vector<MixCost>>& pilot,
+                                                    size_t number);
 
 }  // namespace penumbra

@@ -21,6 +21,8 @@ struct JobHeader {
   std::string message;
   std::vector<int64_t> passes;       ///< planned, per mix; empty until then
   std::vector<AutoPlan> auto_plans;  ///< planned with `passes`, one for each automatic mix
+  std::vector<EarlierPlan> earlier_plans;  ///< what was planned in the stages before
+  std::vector<double> open_borders;        ///< where the plan will be looked at again (server/stages.h)
   bool loaded = false;               ///< `load` and `substitutions` are known
   LoadReport load;
   std::vector<Substitution> substitutions;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "proto/status.h"
+#include "server/replanner.h"
 
 namespace penumbra {
 
@@ -26,12 +27,16 @@ TileTask JobRecord::description(uint64_t id) const {
                       : run_task(spec(), *plan_, tiles_, first_run_id_, id - first_run_id_);
 }
 
+bool JobRecord::measured(uint64_t id) const {
+  return id - first_run_id_ < plan_->measured * tiles_.size();
+}
+
 double JobRecord::work(uint64_t id) const {
   const uint64_t index = id - first_run_id_;
   const uint64_t range = index / tiles_.size();
   const uint64_t tile = index % tiles_.size();
   double passes = 0;
-  for (size_t m = 0; m < plan_->passes.size(); ++m)
+  for (size_t m = 0; m < spec().mixes.size(); ++m)
     passes += static_cast<double>(run_range(*plan_, range, tile, m).count());
   return passes * static_cast<double>(tiles_[tile].area());
 }
@@ -86,7 +91,9 @@ void JobRecord::accept(uint64_t id, AcceptedResult result) {
   --leased_;
   results_[id] = std::move(result);
   if (plan_.has_value() != is_pilot(id)) ++stage_done_;
-  if (!is_pilot(id)) work_done_ += work(id);
+  if (is_pilot(id)) return;
+  work_done_ += work(id);
+  if (measured(id)) --unmeasured_;
 }
 
 void JobRecord::lose(uint64_t id) {
@@ -98,24 +105,59 @@ void JobRecord::lose(uint64_t id) {
   queue_.insert(id);
   --stage_done_;
   work_done_ -= work(id);
+  if (measured(id)) ++unmeasured_;
+}
+
+std::vector<std::vector<MixCost>> JobRecord::pilot_costs() const {
+  std::vector<std::vector<MixCost>> pilot;
+  for (uint64_t id = 0; id < first_run_id_; ++id) pilot.push_back(results_[id]->costs);
+  return pilot;
+}
+
+PlannedPasses JobRecord::planned() const {
+  return {header.passes, header.auto_plans, header.earlier_plans, header.open_borders};
 }
 
 absl::Status JobRecord::make_run() {
-  if (header.passes.empty()) {
-    std::vector<std::vector<MixCost>> pilot;
-    for (uint64_t id = 0; id < first_run_id_; ++id) pilot.push_back(results_[id]->costs);
-    ASSIGN_OR_RETURN(PlannedPasses planned, planned_passes(spec(), pilot));
-    header.passes = std::move(planned.passes);
-    header.auto_plans = std::move(planned.autos);
-  }
-  for (const AutoPlan& plan : header.auto_plans)
-    if (plan.tiles.size() != tiles_.size())
-      return invalid_input("auto_plans: {} tiles, where the job has {}", plan.tiles.size(), tiles_.size());
-  plan_ = make_plan(spec(), header.passes, header.auto_plans);
-  stage_done_ = 0;
+  if (!header.passes.empty()) return set_plan(planned());
+  ASSIGN_OR_RETURN(PlannedPasses planned, planned_passes(spec(), pilot_costs()));
+  return set_plan(std::move(planned));
+}
+
+bool JobRecord::ready_to_replan() const {
+  return plan_ && !header.open_borders.empty() && unmeasured_ == 0;
+}
+
+absl::Status JobRecord::replan() {
+  PENUMBRA_CHECK(ready_to_replan());
+  ASSIGN_OR_RETURN(PlannedPasses next, replanned(spec(), pilot_costs(), planned(),
+                                                 [&](uint64_t i) -> const std::vector<MixCost>* {
+                                                   const auto& result = results_[first_run_id_ + i];
+                                                   return result ? &result->costs : nullptr;
+                                                 }));
+  return set_plan(std::move(next));
+}
+
+/// What is sure keeps its tasks; all others are new.
+absl::Status JobRecord::set_plan(PlannedPasses planned) {
+  RETURN_IF_ERROR(check_stages(spec(), planned));
+  const uint64_t sure_before = plan_ ? plan_->sure : 0;
+  plan_ = make_plan(spec(), planned);
+  header.passes = std::move(planned.passes);
+  header.auto_plans = std::move(planned.autos);
+  header.earlier_plans = std::move(planned.earlier);
+  header.open_borders = std::move(planned.open);
+  if (sure_before == 0) stage_done_ = 0;
   stage_total_ = task_count(*plan_, tiles_);
-  add_tasks(stage_total_);
+  tasks_.resize(first_run_id_ + stage_total_);
+  results_.resize(tasks_.size());
+  for (uint64_t i = sure_before * tiles_.size(); i < plan_->sure * tiles_.size(); ++i)
+    queue_.insert(queue_.end(), first_run_id_ + i);
+  work_total_ = 0;
   for (uint64_t id = first_run_id_; id < tasks_.size(); ++id) work_total_ += work(id);
+  unmeasured_ = 0;
+  for (uint64_t i = 0; i < plan_->measured * tiles_.size(); ++i)
+    unmeasured_ += tasks_[first_run_id_ + i].state != TaskState::kDone;
   return absl::OkStatus();
 }
 

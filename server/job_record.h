@@ -44,7 +44,8 @@ struct Blame {
   std::set<std::string> deaths;
 };
 
-/// Tasks are numbered from 0: first the pilot's (if there is one), then, once planned, the run's.
+/// Tasks are numbered from 0: first the pilot's (if there is one), then, once planned, the run's. Of a run in
+/// stages (server/stages.h) only what is sure is given out.
 class JobRecord {
  public:
   explicit JobRecord(JobHeader header);
@@ -95,6 +96,10 @@ class JobRecord {
   bool ready_to_plan() const { return !plan_ && stage_done_ == stage_total_; }
   /// Makes the plan and the run's tasks. Error: what planned_passes says.
   absl::Status make_run();
+  /// Everything that the next open border's decision is made on is done.
+  bool ready_to_replan() const;
+  /// Decides it: totals anew, and tasks as they follow from them. Error: what replanned() says.
+  absl::Status replan();
   bool all_done() const { return plan_ && stage_done_ == stage_total_; }
 
   /// As stored: brings back plan, epochs, leases and results. Internal for a store that contradicts itself.
@@ -102,6 +107,10 @@ class JobRecord {
 
  private:
   void add_tasks(uint64_t count);
+  std::vector<std::vector<MixCost>> pilot_costs() const;
+  PlannedPasses planned() const;
+  absl::Status set_plan(PlannedPasses planned);
+  bool measured(uint64_t id) const;
   double work(uint64_t id) const;
 
   std::vector<PixelRect> tiles_;
@@ -112,6 +121,7 @@ class JobRecord {
   std::set<uint64_t> queue_;
   uint64_t leased_ = 0, retries_ = 0;
   uint64_t stage_done_ = 0, stage_total_ = 0;
+  uint64_t unmeasured_ = 0;                ///< run tasks that the next open border's decision still waits for
   double work_done_ = 0, work_total_ = 0;  ///< pixel-passes of the run
 };
 

@@ -32,6 +32,10 @@ double sum_cpu_seconds(const JobRecord& job, TaskKind kind) {
   for_each_result(job, kind, [&](uint64_t, const AcceptedResult& result) {
     for (const MixCost& cost : result.costs) sum += cost.cpu_seconds + cost.overhead_seconds;
   });
+  // Within the run, parts of the pilot are repeated.
+  for_each_result(job, TaskKind::kRun, [&](uint64_t, const AcceptedResult& result) {
+    for (const MixCost& cost : result.costs) sum += kind == TaskKind::kPilot ? cost.repilot_seconds : 0;
+  });
   return sum;
 }
 
@@ -85,11 +89,13 @@ std::vector<MixSummary> mix_summaries(const JobRecord& job) {
   std::vector<MixSummary> mixes(job.spec().mixes.size());
   for (size_t m = 0; m < mixes.size(); ++m) {
     mixes[m].mix = job.spec().mixes[m];
-    if (job.plan()) mixes[m].planned_passes = job.plan()->passes[m];
+    if (job.plan()) mixes[m].planned_passes = job.header.passes[m];
   }
   for (const Substitution& s : job.header.substitutions) mixes[s.mix].substitutions.push_back(s.text);
   add_pilot(job, mixes);
   if (!job.plan()) return mixes;
+  std::vector<double> pilot_seconds;  // before the run
+  for (const MixSummary& mix : mixes) pilot_seconds.push_back(mix.pilot_cpu_seconds);
 
   const size_t tiles = job.tiles().size();
   std::vector<std::vector<double>> seconds(job.plan()->boundaries.size(),
@@ -98,17 +104,20 @@ std::vector<MixSummary> mix_summaries(const JobRecord& job) {
     const size_t range = (id - job.first_run_id()) / tiles;
     for (size_t m = 0; m < mixes.size(); ++m) {
       const MixCost& cost = result.costs[m];
-      mixes[m].cpu_seconds += cost.cpu_seconds;
+      // The pilot's repetitions count as the pilot does (add_pilot).
+      const double seconds_of_mix = cost.cpu_seconds + (mixes[m].mix.automatic ? cost.repilot_seconds : 0);
+      mixes[m].cpu_seconds += seconds_of_mix;
+      mixes[m].pilot_cpu_seconds += cost.repilot_seconds;
       mixes[m].rays += cost.rays;
       mixes[m].line_queries += cost.line_queries;
       mixes[m].non_finite += cost.non_finite;
       mixes[m].calibration += cost.calibration;
-      seconds[range][m] += cost.cpu_seconds;
+      seconds[range][m] += seconds_of_mix;
     }
   });
   const size_t whole = whole_ranges(job);
   for (size_t m = 0; m < mixes.size(); ++m) {
-    double sum = mixes[m].mix.automatic ? mixes[m].pilot_cpu_seconds : 0;
+    double sum = mixes[m].mix.automatic ? pilot_seconds[m] : 0;
     for (size_t range = 0; range < whole; ++range) {
       const PassBoundary& boundary = job.plan()->boundaries[range];
       sum += seconds[range][m];
@@ -166,6 +175,7 @@ RunSummary summary_of(const Scheduler& scheduler, const JobRecord& job, const No
   }
   for (auto& [id, worker] : used) summary.workers.push_back(std::move(worker));
   summary.auto_plans = job.header.auto_plans;
+  summary.earlier_plans = job.header.earlier_plans;
   summary.load = job.header.load;
   summary.worker_cpu_seconds = job.header.worker_cpu_seconds;
   summary.render_wall_seconds = render_seconds(job, now);

@@ -7,6 +7,7 @@
 #include "proto/auto_plan.h"
 #include "proto/status.h"
 #include "server/auto_planner.h"
+#include "server/replanner.h"
 
 namespace penumbra {
 namespace {
@@ -78,29 +79,34 @@ struct Share {
   bool checkpoint;
 };
 
-/// Checkpoints, and between them as many cuts as keep tasks short.
-std::vector<Share> boundary_shares(double first_share, double tile_seconds, double task_seconds) {
+/// Where something must end: checkpoints, and the borders of stages.
+std::vector<Share> marks(bool few, const std::vector<double>& borders) {
+  std::vector<Share> marks;
+  for (const double checkpoint : kCheckpoints)
+    if (!few || std::exp2(std::round(std::log2(checkpoint))) == checkpoint)
+      marks.push_back({checkpoint, true});
+  for (const double border : borders) {
+    const auto at =
+        std::find_if(marks.begin(), marks.end(), [&](const Share& s) { return s.share >= border; });
+    if (at->share != border) marks.insert(at, {border, false});
+  }
+  return marks;
+}
+
+/// Marks, and between them as many cuts as keep tasks short.
+std::vector<Share> boundary_shares(double first_share, double tile_seconds, double task_seconds,
+                                   const std::vector<double>& borders) {
   std::vector<Share> shares;
   // A very long run shows its first group without waiting for 1/32 of everything.
   if (first_share < kCheckpoints[0] / 4) shares.push_back({first_share, true});
-  const bool few = tile_seconds < kLeastSecondsForAllCheckpoints;
-  for (const double checkpoint : kCheckpoints) {
-    if (few && std::exp2(std::round(std::log2(checkpoint))) != checkpoint) continue;
+  for (const Share& mark : marks(tile_seconds < kLeastSecondsForAllCheckpoints, borders)) {
     const double from = shares.empty() ? 0 : shares.back().share;
-    const double cuts = std::ceil((checkpoint - from) * tile_seconds / task_seconds);
+    const double cuts = std::ceil((mark.share - from) * tile_seconds / task_seconds);
     for (double cut = 1; cut < cuts; ++cut)
-      shares.push_back({from + (checkpoint - from) * cut / cuts, false});
-    shares.push_back({checkpoint, true});
+      shares.push_back({from + (mark.share - from) * cut / cuts, false});
+    shares.push_back(mark);
   }
   return shares;
-}
-
-/// The whole number of groups nearest to a share; the last boundary has the odd passes too.
-int64_t passes_at(double share, int64_t passes, int64_t group) {
-  if (share == 1) return passes;
-  const auto groups =
-      static_cast<int64_t>(std::llround(share * static_cast<double>(passes) / static_cast<double>(group)));
-  return std::min(groups * group, passes);
 }
 
 /// Passes of the mixes that have the same in every pixel; of all mixes, if there is no such.
@@ -111,54 +117,29 @@ std::vector<int64_t> common_passes(const JobSpec& spec, const std::vector<int64_
   return common.empty() ? passes : common;
 }
 
-/// Mean over the pixels, rounded.
-int64_t mean_passes(const JobSpec& spec, const std::vector<PixelRect>& tiles,
-                    const std::vector<int64_t>& passes) {
+/// Mean over the pixels of one figure per tile, rounded.
+int64_t mean_over_pixels(const JobSpec& spec, const std::vector<PixelRect>& tiles,
+                         const std::vector<int64_t>& passes) {
   double sum = 0;
   for (size_t t = 0; t < tiles.size(); ++t)
     sum += static_cast<double>(passes[t]) * static_cast<double>(tiles[t].area());
   return std::llround(sum / static_cast<double>(spec.crop.area()));
 }
 
-std::vector<int64_t> tile_passes(const AutoPlan& plan) {
-  std::vector<int64_t> passes;
-  for (const TilePlan& tile : plan.tiles) passes.push_back(tile.passes);
+/// Passes of a tile at a share. The first range has a group of every tile, however few passes that tile has:
+/// then there is a whole picture.
+int64_t auto_passes_at(double share, const Plan& plan, size_t automatic, size_t tile) {
+  const std::vector<Stage> stages = stages_of(plan.planned, automatic, tile);
+  const int64_t group = plan.groups[automatic][tile];
+  return std::max(std::min(group, stages.front().total), passes_at(share, stages, group));
+}
+
+/// Of all tiles of all automatic mixes.
+std::vector<std::vector<int64_t>> auto_passes_at(double share, const Plan& plan) {
+  std::vector<std::vector<int64_t>> passes(plan.groups.size());
+  for (size_t a = 0; a < plan.groups.size(); ++a)
+    for (size_t t = 0; t < plan.groups[a].size(); ++t) passes[a].push_back(auto_passes_at(share, plan, a, t));
   return passes;
-}
-
-/// Each tile has groups of its own size: of few passes where few are planned.
-PlannedAuto planned_auto(const JobSpec& spec, const AutoPlan& plan, double seconds_per_pass) {
-  PlannedAuto planned{plan, {}};
-  for (const TilePlan& tile : plan.tiles)
-    planned.groups.push_back(choose_group(spec, tile.passes, seconds_per_pass));
-  return planned;
-}
-
-/// Passes of a tile at a share: ascending in it, so that boundaries need not remember them. The first range
-/// has a group of every tile, however few passes that tile has: then there is a whole picture.
-int64_t passes_at(double share, const PlannedAuto& planned, size_t tile) {
-  const int64_t passes = planned.plan.tiles[tile].passes, group = planned.groups[tile];
-  return std::max(std::min(group, passes), passes_at(share, passes, group));
-}
-
-std::vector<int64_t> passes_at(double share, const PlannedAuto& planned) {
-  std::vector<int64_t> passes;
-  for (size_t t = 0; t < planned.groups.size(); ++t) passes.push_back(passes_at(share, planned, t));
-  return passes;
-}
-
-absl::StatusOr<int64_t> passes_for_seconds(double budget, const std::vector<std::vector<MixCost>>& pilot,
-                                           size_t mix) {
-  double seconds_per_pass = 0;
-  for (const std::vector<MixCost>& tile : pilot) {
-    if (tile.size() <= mix || tile[mix].passes < 1)
-      return make_status(absl::StatusCode::kInternal, "a pilot task of mix {} has rendered no pass", mix);
-    seconds_per_pass += tile[mix].cpu_seconds / static_cast<double>(tile[mix].passes);
-  }
-  if (!(seconds_per_pass > 0))
-    return make_status(absl::StatusCode::kInternal, "the pilot of mix {} has taken no time", mix);
-  constexpr double kMost = 1e12;  // far beyond any run; keeps the conversion defined
-  return std::max<int64_t>(1, std::llround(std::min(budget / seconds_per_pass, kMost)));
 }
 
 absl::StatusOr<int64_t> passes_for_error(double relmse, const JobSpec& spec,
@@ -179,6 +160,27 @@ absl::StatusOr<int64_t> passes_for_error(double relmse, const JobSpec& spec,
 bool needs_pilot(const JobSpec& spec) {
   return spec.plan.empty() &&
          (!std::holds_alternative<SppBudget>(spec.budget) || !automatic_mixes(spec.mixes).empty());
+}
+
+absl::StatusOr<int64_t> passes_for_seconds(double budget, const std::vector<std::vector<MixCost>>& pilot,
+                                           size_t mix, double factor) {
+  double seconds_per_pass = 0;
+  for (const std::vector<MixCost>& tile : pilot) {
+    if (tile.size() <= mix || tile[mix].passes < 1)
+      return make_status(absl::StatusCode::kInternal, "a pilot task of mix {} has rendered no pass", mix);
+    seconds_per_pass += tile[mix].cpu_seconds / static_cast<double>(tile[mix].passes);
+  }
+  seconds_per_pass *= factor;
+  if (!(seconds_per_pass > 0))
+    return make_status(absl::StatusCode::kInternal, "the pilot of mix {} has taken no time", mix);
+  constexpr double kMost = 1e12;  // far beyond any run; keeps the conversion defined
+  return std::max<int64_t>(1, std::llround(std::min(budget / seconds_per_pass, kMost)));
+}
+
+int64_t mean_passes(const JobSpec& spec, const std::vector<PixelRect>& tiles, const AutoPlan& plan) {
+  std::vector<int64_t> passes;
+  for (const TilePlan& tile : plan.tiles) passes.push_back(tile.passes);
+  return std::max<int64_t>(1, mean_over_pixels(spec, tiles, passes));
 }
 
 TileTask pilot_task(const JobSpec& spec, const std::vector<PixelRect>& tiles, uint64_t index) {
@@ -213,14 +215,16 @@ size_t costs_of(const TileTask& task) {
 
 absl::StatusOr<PlannedPasses> planned_passes(const JobSpec& spec,
                                              const std::vector<std::vector<MixCost>>& pilot) {
-  if (!spec.plan.empty()) return PlannedPasses{spec.plan, spec.auto_plans};
+  if (!spec.plan.empty()) return PlannedPasses{spec.plan, spec.auto_plans, spec.earlier_plans};
   PlannedPasses planned;
+  planned.open = borders_of(spec);
   std::vector<int64_t>& passes = planned.passes;
   const std::vector<PixelRect> tiles = tiles_of(spec);
   for (size_t m = 0; m < spec.mixes.size(); ++m) {
     if (spec.mixes[m].automatic) {
-      ASSIGN_OR_RETURN(AutoPlan plan, plan_auto(spec, tiles, pilot, planned.autos.size()));
-      passes.push_back(std::max<int64_t>(1, mean_passes(spec, tiles, tile_passes(plan))));
+      ASSIGN_OR_RETURN(AutoPlan plan, plan_auto(spec, tiles, pilot, planned.autos.size(),
+                                                {1, expected_repilot_seconds(spec)}));
+      passes.push_back(mean_passes(spec, tiles, plan));
       planned.autos.push_back(std::move(plan));
     } else if (const auto* spp = std::get_if<SppBudget>(&spec.budget)) {
       passes.push_back(spp->passes);
@@ -236,36 +240,62 @@ absl::StatusOr<PlannedPasses> planned_passes(const JobSpec& spec,
   return planned;
 }
 
-Plan make_plan(const JobSpec& spec, const std::vector<int64_t>& passes, const std::vector<AutoPlan>& autos) {
-  PENUMBRA_CHECK(passes.size() == spec.mixes.size());
-  PENUMBRA_CHECK(autos.size() == automatic_mixes(spec.mixes).size());
-  Plan plan;
-  plan.passes = passes;
-  const double seconds = expected_seconds(spec, passes);
-  // Of a full tile: smaller ones at the edges must not shrink the tasks of all others.
-  const double tile_area =
-      std::min<double>(static_cast<double>(spec.tile) * spec.tile, static_cast<double>(spec.crop.area()));
-  const double tile_seconds = seconds * tile_area / static_cast<double>(spec.crop.area());
-  const double most = static_cast<double>(*std::max_element(passes.begin(), passes.end()));
-  const std::vector<int64_t> common = common_passes(spec, passes);
-  plan.group = choose_group(spec, *std::min_element(common.begin(), common.end()), tile_seconds / most);
-  for (const AutoPlan& a : autos) plan.autos.push_back(planned_auto(spec, a, tile_seconds / most));
-  const double task_seconds = std::max(
-      std::clamp(seconds / kTasksPerRun, kLeastTaskSeconds, kMostTaskSeconds), tile_seconds / kMostRanges);
+absl::Status check_stages(const JobSpec& spec, const PlannedPasses& planned) {
   const std::vector<PixelRect> tiles = tiles_of(spec);
+  for (const AutoPlan& plan : planned.autos)
+    if (plan.tiles.size() != tiles.size())
+      return invalid_input("auto_plans: {} tiles, where the job has {}", plan.tiles.size(), tiles.size());
+  for (const EarlierPlan& plan : planned.earlier)
+    for (const std::vector<int64_t>& passes : plan.autos)
+      if (passes.size() != tiles.size())
+        return invalid_input("earlier_plans: {} tiles, where the job has {}", passes.size(), tiles.size());
+  if (planned.earlier.empty()) return absl::OkStatus();
+  // At a border the totals of the stages before and after must not lie below what is rendered there.
+  const Plan plan = make_plan(spec, planned);
+  for (size_t i = 1; i < plan.boundaries.size(); ++i)
+    for (size_t t = 0; t < tiles.size(); ++t)
+      for (size_t m = 0; m < spec.mixes.size(); ++m)
+        if (run_range(plan, i, t, m).count() < 0)
+          return invalid_input("earlier_plans: mix {} has more passes at a border than in all", m);
+  for (size_t m = 0; m < spec.mixes.size(); ++m)
+    if (!spec.mixes[m].automatic && plan.boundaries.back().passes[m] != planned.passes[m])
+      return invalid_input("earlier_plans: mix {} has more passes at a border than in all", m);
+  return absl::OkStatus();
+}
 
-  std::vector<int64_t> before(passes.size(), 0);
-  std::vector<std::vector<int64_t>> before_autos(autos.size(), std::vector<int64_t>(tiles.size(), 0));
-  for (const auto& [share, checkpoint] :
-       boundary_shares(static_cast<double>(plan.group) / most, tile_seconds, task_seconds)) {
+/// The totals that were planned first: they decide what must be the same in all stages.
+static PlannedPasses first_plan(const PlannedPasses& planned) {
+  if (planned.earlier.empty()) return planned;
+  PlannedPasses first{planned.earlier[0].passes, planned.autos};
+  for (size_t a = 0; a < first.autos.size(); ++a)
+    for (size_t t = 0; t < first.autos[a].tiles.size(); ++t)
+      first.autos[a].tiles[t].passes = planned.earlier[0].autos[a][t];
+  return first;
+}
+
+/// Borders of all stages, past and open.
+static std::vector<double> all_borders(const PlannedPasses& planned) {
+  std::vector<double> borders;
+  for (const EarlierPlan& plan : planned.earlier) borders.push_back(plan.until);
+  borders.insert(borders.end(), planned.open.begin(), planned.open.end());
+  return borders;
+}
+
+/// The boundaries of a plan whose groups are known.
+static void add_boundaries(const JobSpec& spec, Plan& plan, const std::vector<Share>& shares) {
+  const std::vector<PixelRect> tiles = tiles_of(spec);
+  plan.tiles = tiles.size();
+  std::vector<int64_t> before(spec.mixes.size(), 0);
+  std::vector<std::vector<int64_t>> before_autos(plan.groups.size(), std::vector<int64_t>(tiles.size(), 0));
+  for (const auto& [share, checkpoint] : shares) {
     PassBoundary boundary{{}, checkpoint, share};
-    std::vector<std::vector<int64_t>> now;
-    for (const PlannedAuto& a : plan.autos) now.push_back(passes_at(share, a));
+    std::vector<std::vector<int64_t>> now = auto_passes_at(share, plan);
     size_t automatic = 0;
-    for (size_t m = 0; m < passes.size(); ++m)
-      boundary.passes.push_back(spec.mixes[m].automatic
-                                    ? mean_passes(spec, tiles, now[automatic++])
-                                    : std::max(before[m], passes_at(share, passes[m], plan.group)));
+    for (size_t m = 0; m < spec.mixes.size(); ++m)
+      boundary.passes.push_back(
+          spec.mixes[m].automatic
+              ? mean_over_pixels(spec, tiles, now[automatic++])
+              : std::max(before[m], passes_at(share, stages_of(plan.planned, m), plan.group)));
     if (now == before_autos && boundary.passes == before) {
       // Too few passes for this cut: the boundary that is already there serves the checkpoint.
       if (checkpoint && !plan.boundaries.empty()) plan.boundaries.back().checkpoint = true;
@@ -275,9 +305,44 @@ Plan make_plan(const JobSpec& spec, const std::vector<int64_t>& passes, const st
     before_autos = std::move(now);
     plan.boundaries.push_back(std::move(boundary));
   }
+}
+
+Plan make_plan(const JobSpec& spec, const PlannedPasses& planned) {
+  PENUMBRA_CHECK(planned.passes.size() == spec.mixes.size());
+  PENUMBRA_CHECK(planned.autos.size() == automatic_mixes(spec.mixes).size());
+  Plan plan;
+  plan.planned = planned;
+  const PlannedPasses first = first_plan(planned);
+  const std::vector<int64_t>& passes = first.passes;
+  const double seconds = expected_seconds(spec, passes);
+  // Of a full tile: smaller ones at the edges must not shrink the tasks of all others.
+  const double tile_area =
+      std::min<double>(static_cast<double>(spec.tile) * spec.tile, static_cast<double>(spec.crop.area()));
+  const double tile_seconds = seconds * tile_area / static_cast<double>(spec.crop.area());
+  const double most = static_cast<double>(*std::max_element(passes.begin(), passes.end()));
+  const std::vector<int64_t> common = common_passes(spec, passes);
+  plan.group = choose_group(spec, *std::min_element(common.begin(), common.end()), tile_seconds / most);
+  // Each tile of an automatic mix has groups of its own size: of few passes where few are planned.
+  for (const AutoPlan& a : first.autos) {
+    plan.groups.emplace_back();
+    for (const TilePlan& tile : a.tiles)
+      plan.groups.back().push_back(choose_group(spec, tile.passes, tile_seconds / most));
+  }
+  const double task_seconds = std::max(
+      std::clamp(seconds / kTasksPerRun, kLeastTaskSeconds, kMostTaskSeconds), tile_seconds / kMostRanges);
+  add_boundaries(spec, plan,
+                 boundary_shares(static_cast<double>(plan.group) / most, tile_seconds, task_seconds,
+                                 all_borders(planned)));
   // With large groups the cuts are few: then each of them is worth a look.
   if (tile_seconds >= kLeastSecondsForAllCheckpoints && plan.boundaries.size() <= std::size(kCheckpoints))
     for (PassBoundary& boundary : plan.boundaries) boundary.checkpoint = true;
+  plan.boundaries.back().checkpoint = true;
+  const auto up_to = [&](double share) {
+    return static_cast<uint64_t>(std::count_if(plan.boundaries.begin(), plan.boundaries.end(),
+                                               [&](const PassBoundary& b) { return b.share <= share; }));
+  };
+  plan.sure = up_to(planned.open.empty() ? 1 : planned.open.front());
+  plan.measured = planned.open.empty() ? 0 : up_to(measured_share(planned.earlier));
   return plan;
 }
 
@@ -286,10 +351,10 @@ uint64_t task_count(const Plan& plan, const std::vector<PixelRect>& tiles) {
 }
 
 PassRange run_range(const Plan& plan, uint64_t range, uint64_t tile, size_t mix) {
-  for (const PlannedAuto& a : plan.autos) {
-    if (a.plan.mix != static_cast<int>(mix)) continue;
-    return {range == 0 ? 0 : passes_at(plan.boundaries[range - 1].share, a, tile),
-            passes_at(plan.boundaries[range].share, a, tile)};
+  for (size_t a = 0; a < plan.planned.autos.size(); ++a) {
+    if (plan.planned.autos[a].mix != static_cast<int>(mix)) continue;
+    return {range == 0 ? 0 : auto_passes_at(plan.boundaries[range - 1].share, plan, a, tile),
+            auto_passes_at(plan.boundaries[range].share, plan, a, tile)};
   }
   return {range == 0 ? 0 : plan.boundaries[range - 1].passes[mix], plan.boundaries[range].passes[mix]};
 }
@@ -302,10 +367,14 @@ TileTask run_task(const JobSpec& spec, const Plan& plan, const std::vector<Pixel
   task.id = first_id + index;
   const uint64_t tile = index % tiles.size();
   task.tile = tiles[tile];
-  for (size_t m = 0; m < plan.passes.size(); ++m) task.passes.push_back(run_range(plan, range, tile, m));
+  for (size_t m = 0; m < spec.mixes.size(); ++m) task.passes.push_back(run_range(plan, range, tile, m));
   task.group = plan.group;
-  for (const PlannedAuto& a : plan.autos)
-    task.chosen.push_back({a.plan.mix, a.plan.candidates[a.plan.tiles[tile].candidate], a.groups[tile]});
+  for (size_t a = 0; a < plan.planned.autos.size(); ++a) {
+    const AutoPlan& planned = plan.planned.autos[a];
+    task.chosen.push_back(
+        {planned.mix, planned.candidates[planned.tiles[tile].candidate], plan.groups[a][tile]});
+  }
+  task.repilot = repilot_of(spec, plan, range, tile);
   task.shuffle = scramble(spec.seed, first_id + index);
   return task;
 }

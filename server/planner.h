@@ -7,6 +7,7 @@
 #include "absl/status/statusor.h"
 #include "proto/job.h"
 #include "proto/tiles.h"
+#include "server/stages.h"
 
 namespace penumbra {
 
@@ -20,12 +21,6 @@ TileTask pilot_task(const JobSpec& spec, const std::vector<PixelRect>& tiles, ui
 /// Costs that a task must report: one per mix, and after them, for a pilot, one per candidate.
 size_t costs_of(const TileTask& task);
 
-/// Passes per mix, and the plans of the automatic ones (server/auto_planner.h).
-struct PlannedPasses {
-  std::vector<int64_t> passes;  ///< of an automatic mix: the mean over the pixels, rounded, at least 1
-  std::vector<AutoPlan> autos;
-};
-
 /// `pilot[tile]` are the costs of all pilot tasks; empty where needs_pilot is false. Of a mix that is not
 /// automatic:
 /// CPU seconds S: N = max(1, round(S / Σ_tiles seconds per pass)).
@@ -35,6 +30,13 @@ struct PlannedPasses {
 absl::StatusOr<PlannedPasses> planned_passes(const JobSpec& spec,
                                              const std::vector<std::vector<MixCost>>& pilot);
 
+/// Of one mix that is not automatic; `factor`: seconds now per second of the pilot.
+absl::StatusOr<int64_t> passes_for_seconds(double budget, const std::vector<std::vector<MixCost>>& pilot,
+                                           size_t mix, double factor = 1);
+
+/// Passes of an automatic mix: the mean over the pixels, rounded, at least 1.
+int64_t mean_passes(const JobSpec& spec, const std::vector<PixelRect>& tiles, const AutoPlan& plan);
+
 /// The end of one range of passes, common to all tiles.
 struct PassBoundary {
   std::vector<int64_t> passes;  ///< cumulative, one per mix; of an automatic mix the mean over the pixels
@@ -43,24 +45,30 @@ struct PassBoundary {
   bool operator==(const PassBoundary&) const = default;
 };
 
-/// An automatic mix in a plan: what each tile does.
-struct PlannedAuto {
-  AutoPlan plan;
-  std::vector<int64_t> groups;  ///< per tile: passes per independently scrambled group
-  bool operator==(const PlannedAuto&) const = default;
-};
-
 struct Plan {
-  std::vector<int64_t> passes;           ///< per mix
-  std::vector<PlannedAuto> autos;        ///< one per automatic mix, in their order
-  int64_t group = 1;                     ///< passes per independently scrambled group; not of `autos`
-  std::vector<PassBoundary> boundaries;  ///< ascending; the last has all passes and is a checkpoint
+  PlannedPasses planned;
+  std::vector<std::vector<int64_t>> groups;  ///< per automatic mix and tile: passes per scrambled group
+  int64_t group = 1;                         ///< passes per independently scrambled group of the others
+  std::vector<PassBoundary> boundaries;      ///< ascending; the last has all passes and is a checkpoint
+  uint64_t tiles = 0;                        ///< of the job
+  /// Ranges that are sure; those after them change when the plan is looked at again.
+  uint64_t sure = 0;
+  /// Ranges that must be done before it is; meaningless without an open border.
+  uint64_t measured = 0;
   bool operator==(const Plan&) const = default;
 };
 
-/// `autos`: one for each automatic mix, with a plan for each tile.
-Plan make_plan(const JobSpec& spec, const std::vector<int64_t>& passes,
-               const std::vector<AutoPlan>& autos = {});
+/// `autos`: one for each automatic mix, with a plan for each tile. Whatever is planned at the open borders,
+/// the ranges up to the first of them stay what they are.
+Plan make_plan(const JobSpec& spec, const PlannedPasses& planned);
+inline Plan make_plan(const JobSpec& spec, const std::vector<int64_t>& passes,
+                      const std::vector<AutoPlan>& autos = {}) {
+  return make_plan(spec, PlannedPasses{passes, autos});
+}
+
+/// InvalidArgument if a stage's totals lie below what the one before has rendered, or are not for these
+/// tiles.
+absl::Status check_stages(const JobSpec& spec, const PlannedPasses& planned);
 
 /// Number of run tasks: ranges × tiles.
 uint64_t task_count(const Plan& plan, const std::vector<PixelRect>& tiles);

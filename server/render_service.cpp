@@ -63,6 +63,8 @@ absl::StatusOr<JobSpec> checked_spec(const BlobFolder& blobs, const v1::SubmitRe
   for (const AutoPlan& plan : spec.auto_plans)
     if (plan.tiles.size() != tiles)
       return invalid_input("auto_plans: {} tiles, where the job has {}", plan.tiles.size(), tiles);
+  if (!spec.plan.empty())
+    RETURN_IF_ERROR(check_stages(spec, {spec.plan, spec.auto_plans, spec.earlier_plans}));
   RETURN_IF_ERROR(check_bundle(blobs, spec));
   return spec;
 }

@@ -39,6 +39,8 @@ std::string serialize_header(const JobHeader& header) {
   out.set_worker_cpu_seconds(header.worker_cpu_seconds);
   out.set_scheduler_cpu_seconds(header.scheduler_cpu_seconds);
   for (const AutoPlan& plan : header.auto_plans) *out.add_auto_plans() = to_proto(plan);
+  for (const EarlierPlan& plan : header.earlier_plans) *out.add_earlier_plans() = to_proto(plan);
+  out.mutable_open_borders()->Add(header.open_borders.begin(), header.open_borders.end());
   return out.SerializeAsString();
 }
 
@@ -69,6 +71,9 @@ absl::StatusOr<JobHeader> parse_header(std::string_view bytes) {
   header.worker_cpu_seconds = message.worker_cpu_seconds();
   header.scheduler_cpu_seconds = message.scheduler_cpu_seconds();
   ASSIGN_OR_RETURN(header.auto_plans, auto_plans_from_proto(message.auto_plans(), header.spec.mixes));
+  ASSIGN_OR_RETURN(header.earlier_plans,
+                   earlier_plans_from_proto(message.earlier_plans(), header.spec.mixes));
+  header.open_borders.assign(message.open_borders().begin(), message.open_borders().end());
   return header;
 }
 

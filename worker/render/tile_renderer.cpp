@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "proto/status.h"
 #include "worker/render/calibration.h"
@@ -39,6 +40,8 @@ class MixRun {
 
   int64_t left() const { return end_ - next_; }
   void stop() { end_ = next_; }
+  int64_t next() const { return next_; }
+  int64_t passes() const { return cost_.passes; }
   double cpu_seconds() const { return cost_.cpu_seconds; }
   Calibration& calibration() { return cost_.calibration; }
 
@@ -115,6 +118,45 @@ std::vector<size_t> interleaving(const TileTask& task) {
   return slices;
 }
 
+/// Passes of the pilot that a run task repeats between its own: timed and thrown away. Each takes its place
+/// before any of the mix's own passes with the same probability, so that it finds caches as warm as these do
+/// on average.
+class Repilot {
+ public:
+  Repilot(const Rendering& rendering, const TileTask& task) : rendering_(rendering), task_(task) {
+    if (task.repilot.empty()) return;
+    rendering_.kind = TaskKind::kPilot;
+    task_.passes = task.repilot;
+    for (size_t m = 0; m < task.passes.size(); ++m) {
+      runs_.push_back(std::make_unique<MixRun>(rendering_, task_, m));
+      places_.emplace_back();
+      uint64_t state = task.shuffle + m;
+      for (int64_t p = task.passes[m].count() > 0 ? task.repilot[m].count() : 0; p > 0; --p)
+        places_[m].insert(task.passes[m].begin +
+                          int64_t(next_random(state) % uint64_t(task.passes[m].count())));
+    }
+  }
+
+  /// Whatever has its place before this pass of this mix.
+  void before(size_t mix, int64_t pass) {
+    if (runs_.empty()) return;
+    for (size_t n = places_[mix].count(pass); n > 0; --n) runs_[mix]->pass();
+  }
+
+  void report(std::vector<MixCost>& costs) const {
+    for (size_t m = 0; m < runs_.size(); ++m) {
+      costs[m].repilot_passes = runs_[m]->passes();
+      costs[m].repilot_seconds = runs_[m]->cpu_seconds();
+    }
+  }
+
+ private:
+  Rendering rendering_;
+  TileTask task_;
+  std::vector<std::unique_ptr<MixRun>> runs_;
+  std::vector<std::multiset<int64_t>> places_;  ///< per mix: its own passes that one of the pilot's precedes
+};
+
 /// Costs of all candidates, in the task's order; those of one automatic mix stand together. False: cancelled.
 bool run_candidates(const Rendering& rendering, const TileTask& task, const std::atomic<bool>& cancel,
                     std::vector<MixCost>& costs) {
@@ -153,7 +195,8 @@ bool run_pilot(std::vector<std::unique_ptr<MixRun>>& runs, double seconds, const
 TaskOutcome render_tile(const Scene& scene, const JobSpec& job, const TileTask& task,
                         const std::atomic<bool>& cancel) {
   PENUMBRA_CHECK(task.passes.size() == job.mixes.size());
-  if (job.probe && job.probe->kind == Probe::Kind::kIntegrand) return render_integrand(scene, job, task, cancel);
+  if (job.probe && job.probe->kind == Probe::Kind::kIntegrand)
+    return render_integrand(scene, job, task, cancel);
   TaskOutcome outcome;
   const auto camera = Camera::build(scene.description, job.width, job.height);
   PENUMBRA_CHECK(camera.ok());  // build_scene() has tried it
@@ -166,6 +209,7 @@ TaskOutcome render_tile(const Scene& scene, const JobSpec& job, const TileTask& 
     outcome.cancelled = !run_pilot(runs, task.pilot_seconds, cancel);
   } else {
     CalibrationClock calibration;
+    Repilot repilot(rendering, task);
     for (size_t m : interleaving(task)) {
       calibration.before_slice(runs[m]->calibration());
       for (int64_t p = std::min(kSlice, runs[m]->left()); p > 0; --p) {
@@ -173,14 +217,19 @@ TaskOutcome render_tile(const Scene& scene, const JobSpec& job, const TileTask& 
           outcome.cancelled = true;
           return outcome;
         }
+        repilot.before(m, runs[m]->next());
         runs[m]->pass();
       }
     }
-    for (auto& run : runs) outcome.pixels.mixes.push_back(run->pixels());
+    for (auto& run : runs) {
+      outcome.pixels.mixes.push_back(run->pixels());
+      outcome.costs.push_back(run->cost());
+    }
+    repilot.report(outcome.costs);
+    return outcome;
   }
   for (auto& run : runs) outcome.costs.push_back(run->cost());
-  if (task.kind == TaskKind::kPilot && !outcome.cancelled)
-    outcome.cancelled = !run_candidates(rendering, task, cancel, outcome.costs);
+  if (!outcome.cancelled) outcome.cancelled = !run_candidates(rendering, task, cancel, outcome.costs);
   return outcome;
 }
 

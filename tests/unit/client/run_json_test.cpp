@@ -91,6 +91,7 @@ TEST(RunJson, PlansOfAutoAreToldAndReplayed) {
   spec.tile = 16;
   run.summary.mixes[1].mix = spec.mixes[1];
   run.summary.auto_plans = {{1, {*parse_mix("sa:4"), *parse_mix("bsdf:2+sa:2")}, {{1, 20}, {0, 108}}}};
+  run.summary.earlier_plans = {{0.75, {10, 60}, {{18, 102}}}};
   const Json json = Json::parse(json_text(run_json(run)));
   const Json& plan = json["auto_plans"][0];
   EXPECT_EQ(plan["mix"], 1);
@@ -101,6 +102,7 @@ TEST(RunJson, PlansOfAutoAreToldAndReplayed) {
   const auto again = replay_spec(json);
   ASSERT_TRUE(again.ok()) << message_of(again.status());
   EXPECT_EQ(again->auto_plans, run.summary.auto_plans);
+  EXPECT_EQ(again->earlier_plans, run.summary.earlier_plans);
   // A replay's own run.json replays too.
   const auto third = job_from_json(to_json(*again));
   ASSERT_TRUE(third.ok()) << message_of(third.status());
@@ -120,6 +122,12 @@ TEST(RunJson, PlansOfAutoAreToldAndReplayed) {
   EXPECT_THAT(fault([](Json& plans) { plans[0]["tiles"][0]["passes"] = 0; }), HasSubstr("0 passes"));
   EXPECT_THAT(fault([](Json& plans) { plans[0]["mix"] = 0; }), HasSubstr("auto_plans"));
   EXPECT_THAT(fault([](Json& plans) { plans[0].erase("candidates"); }), HasSubstr("candidates"));
+  Json broken = json;
+  broken["earlier_plans"][0]["autos"][0].erase(1);
+  EXPECT_THAT(message_of(replay_spec(broken).status()), HasSubstr("earlier_plans: 1 tiles"));
+  broken = json;
+  broken["earlier_plans"][0].erase("until");
+  EXPECT_THAT(message_of(replay_spec(broken).status()), HasSubstr("earlier_plans"));
 }
 
 TEST(RunJson, WhatCannotBeReplayedIsSaid) {

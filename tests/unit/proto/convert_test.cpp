@@ -82,7 +82,45 @@ TEST(Convert, PlansOfAutoComeBack) {
   EXPECT_FALSE(from_proto(message).ok()) << "passes without the plan of `auto`";
 }
 
+TEST(Convert, EarlierPlansComeBackAndMustFit) {
+  JobSpec spec = full_spec();
+  spec.mixes.push_back(*parse_mix("auto"));
+  spec.plan = {7, 8, 9, 10};
+  spec.auto_plans = {{3, {*parse_mix("sa:4")}, {{0, 5}, {0, 15}}}};
+  spec.earlier_plans = {{0.75, {8, 9, 10, 11}, {{6, 16}}}, {0.875, {7, 8, 9, 9}, {{5, 14}}}};
+  expect_round_trip(spec);
+  const std::vector<std::function<void(v1::JobSpec&)>> faults = {
+      [](v1::JobSpec& s) { s.mutable_earlier_plans(1)->set_until(0.75); },
+      [](v1::JobSpec& s) { s.mutable_earlier_plans(1)->set_until(1); },
+      [](v1::JobSpec& s) { s.mutable_earlier_plans(0)->set_until(std::nan("")); },
+      [](v1::JobSpec& s) { s.mutable_earlier_plans(0)->add_passes(1); },
+      [](v1::JobSpec& s) { s.mutable_earlier_plans(0)->clear_autos(); },
+      [](v1::JobSpec& s) { s.mutable_earlier_plans(0)->mutable_autos(0)->set_passes(0, 0); },
+      [](v1::JobSpec& s) {
+        s.clear_plan();
+        s.clear_auto_plans();
+      },
+  };
+  for (size_t i = 0; i < faults.size(); ++i) {
+    v1::JobSpec message = to_proto(spec);
+    faults[i](message);
+    const auto read = from_proto(message);
+    ASSERT_FALSE(read.ok()) << i;
+    EXPECT_NE(message_of(read.status()).find("earlier_plans"), std::string::npos) << read.status();
+  }
+}
+
 TEST(Convert, TasksCostsAndReportsComeBack) {
+  TileTask repeats{3, TaskKind::kRun, {0, 0, 64, 32}, {{0, 8}, {2, 2}}, 4, 99};
+  repeats.repilot = {{1, 2}, {0, 0}};
+  expect_round_trip(repeats);
+  v1::TileTask one_short = to_proto(repeats);
+  one_short.mutable_repilot()->RemoveLast();
+  EXPECT_FALSE(from_proto(one_short).ok());
+  MixCost repeated;
+  repeated.repilot_passes = 3;
+  repeated.repilot_seconds = 0.25;
+  expect_round_trip(repeated);
   expect_round_trip(TileTask{3, TaskKind::kPilot, {0, 0, 64, 32}, {{0, 8}, {2, 2}}, 4, 99, 0.5});
   expect_round_trip(TileTask{3,
                              TaskKind::kPilot,
@@ -110,7 +148,8 @@ TEST(Convert, SummariesComeBack) {
   summary.status.faults = {1, 2, 3, 4, 5, 6, 7};
   summary.status.terms = {"ada", -7, {"shot=12"}, {"j0"}};
   for (const Mix& mix : summary.spec.mixes)
-    summary.mixes.push_back({mix, 7, 6, 1.5, 10, 20, 1, 0.1, {"sa for line-sa@v"}, {{1, 0.2}, {6, 1.5}}, {7, 0.125}});
+    summary.mixes.push_back(
+        {mix, 7, 6, 1.5, 10, 20, 1, 0.1, {"sa for line-sa@v"}, {{1, 0.2}, {6, 1.5}}, {7, 0.125}});
   summary.tiles = {{{0, 0, 8, 8}, 2, 6, 0.5, "uuid", {3, 0.5}}};
   summary.workers = {{"uuid", "host", "avx512", 2}};
   summary.worker_cpu_seconds = 3;

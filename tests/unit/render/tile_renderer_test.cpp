@@ -55,6 +55,28 @@ TEST(TileRenderer, MixesAndPassesHaveRandomNumbersOfTheirOwn) {
   EXPECT_NE(first.pixels.mixes[0].mean, second.pixels.mixes[0].mean);
 }
 
+TEST(TileRenderer, RepeatedPassesOfThePilotAreTimedAndLeaveNoTrace) {
+  const ScenePtr scene = test::load_text(kScene);
+  ASSERT_TRUE(scene);
+  const JobSpec spec = test::job(16, 12, {"bsdf:1+line-sa@u:1", "sa:2"}, 9);
+  const std::atomic<bool> cancel = false;
+  const TileTask plain = task(spec, {4, 13}, {0, 9});
+  TileTask repeats = plain;
+  repeats.repilot = {{2, 5}, {0, 0}};
+  const TaskOutcome x = render_tile(*scene, spec, plain, cancel), y = render_tile(*scene, spec, repeats, cancel);
+  for (size_t m = 0; m < 2; ++m) {
+    EXPECT_EQ(x.pixels.mixes[m].mean, y.pixels.mixes[m].mean);
+    EXPECT_EQ(x.pixels.mixes[m].m2, y.pixels.mixes[m].m2);
+    EXPECT_EQ(y.costs[m].passes, 9);
+    EXPECT_EQ(x.costs[m].rays, y.costs[m].rays);
+    EXPECT_EQ(x.costs[m].repilot_passes, 0);
+  }
+  EXPECT_EQ(y.costs[0].repilot_passes, 3);
+  EXPECT_GT(y.costs[0].repilot_seconds, 0);
+  EXPECT_EQ(y.costs[1].repilot_passes, 0);
+  EXPECT_EQ(y.costs[1].repilot_seconds, 0);
+}
+
 TEST(TileRenderer, APilotReportsCostsAndNoPixels) {
   const ScenePtr scene = test::load_text(kScene);
   ASSERT_TRUE(scene);

@@ -195,7 +195,7 @@ TEST(AutoPlanner, TasksCarryWhatStandsForAuto) {
   }
   EXPECT_EQ(done[0], 100);
   EXPECT_EQ(done[1], 7);
-  EXPECT_GT(run.autos[0].groups[0], run.autos[0].groups[1]) << "few passes need small groups";
+  EXPECT_GT(run.groups[0][0], run.groups[0][1]) << "few passes need small groups";
   EXPECT_EQ(run.boundaries.back().passes, (std::vector<int64_t>{40, 54}));
 }
 

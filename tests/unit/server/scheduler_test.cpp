@@ -61,6 +61,10 @@ class SchedulerTest : public testing::Test {
       CompletedTask done{held.lease, task.kind == TaskKind::kRun ? Digest(64, 'b') : Digest(), {}};
       for (const PassRange& range : task.passes)
         done.costs.push_back({task.kind == TaskKind::kRun ? range.count() : 2, 0.01, 10, 1, 0, 0});
+      for (size_t m = 0; m < task.repilot.size(); ++m) {
+        done.costs[m].repilot_passes = task.repilot[m].count();
+        done.costs[m].repilot_seconds = slow_ * 0.005 * static_cast<double>(task.repilot[m].count());
+      }
       state.completed.push_back(done);
     }
     state.held.clear();
@@ -81,6 +85,7 @@ class SchedulerTest : public testing::Test {
     return scheduler_.submit("j1", "request", spec_of(budget), now_);
   }
 
+  double slow_ = 1;  ///< seconds of a repeated pass per second of the pilot's
   Scheduler scheduler_;
   Now now_{100, 1'000'000, 0};
   std::map<LeaseId, TileTask> tasks_;
@@ -112,7 +117,8 @@ TEST_F(SchedulerTest, ThePilotDecidesThePasses) {
   EXPECT_EQ(summary.mixes[0].passes, 100);
   EXPECT_EQ(summary.mixes[0].checkpoints.back().passes, 100);
   EXPECT_NEAR(summary.mixes[0].checkpoints.back().cpu_seconds, summary.mixes[0].cpu_seconds, 1e-12);
-  EXPECT_NEAR(summary.mixes[0].pilot_cpu_seconds, 0.02, 1e-12);
+  // Two tiles in the pilot, and six of its passes repeated within the run.
+  EXPECT_NEAR(summary.mixes[0].pilot_cpu_seconds, 0.02 + 6 * 0.005, 1e-12);
   ASSERT_EQ(summary.workers.size(), 1u);
   EXPECT_EQ(summary.tiles.size(), 4u);  // 2 tiles × 2 mixes, one worker
 }
@@ -376,6 +382,75 @@ TEST_F(SchedulerTest, ARestartAnywhereGoesOn) {
     EXPECT_EQ(scheduler_.find(job)->header.state, JobState::kDone);
     EXPECT_EQ(scheduler_.find(job)->retries(), 0u);
   }
+}
+
+TEST_F(SchedulerTest, ARestartWithinAStageGoesOnWithItsPlan) {
+  slow_ = 1.5;
+  std::vector<int64_t> passes;
+  std::vector<EarlierPlan> earlier;
+  size_t seen = 0;  // numbers of stages at restarts
+  for (int stop_after = -1; stop_after < 24; ++stop_after) {
+    SCOPED_TRACE(stop_after);
+    scheduler_ = Scheduler();
+    changes_.clear();
+    tasks_.clear();
+    const JobId job = submit(CpuSecondsBudget{1});
+    collect();
+    WorkerState a = worker("a", "0", 2);
+    for (int i = 0; i < stop_after && !scheduler_.find(job)->final(); ++i) {
+      sync(a);
+      finish_all(a);
+    }
+    if (stop_after >= 0) {
+      const JobHeader before = scheduler_.find(job)->header;
+      scheduler_ = Scheduler();
+      ASSERT_TRUE(scheduler_.restore(replay(changes_), now_).ok());
+      EXPECT_EQ(scheduler_.find(job)->header.passes, before.passes);
+      EXPECT_EQ(scheduler_.find(job)->header.earlier_plans, before.earlier_plans);
+      EXPECT_EQ(scheduler_.find(job)->header.open_borders, before.open_borders);
+      if (!before.passes.empty()) seen |= size_t{1} << before.open_borders.size();
+    }
+    run_to_end(a, job);
+    const JobHeader& header = scheduler_.find(job)->header;
+    ASSERT_EQ(header.state, JobState::kDone);
+    EXPECT_EQ(scheduler_.find(job)->retries(), 0u);
+    if (stop_after < 0) {
+      passes = header.passes;
+      earlier = header.earlier_plans;
+      EXPECT_LT(passes[0], 90);
+      EXPECT_EQ(earlier.size(), 2u);
+    }
+    EXPECT_EQ(header.passes, passes);
+    EXPECT_EQ(header.earlier_plans, earlier);
+  }
+  EXPECT_EQ(seen, 7u) << "a restart in every stage";
+}
+
+TEST_F(SchedulerTest, BeyondWhatIsSureNothingIsGivenOutBeforeTheDecision) {
+  slow_ = 0.9;
+  const JobId job = submit(CpuSecondsBudget{1});
+  WorkerState a = worker("a", "0", 2);
+  sync(a);
+  finish_all(a);
+  sync(a);  // the pilot is done
+  // Everything is leased, nothing done: the queue ends at the first border.
+  a.wanted = 1000;
+  sync(a);
+  const JobRecord& record = *scheduler_.find(job);
+  EXPECT_EQ(record.pending(), 0u);
+  EXPECT_EQ(a.held.size(), record.plan()->sure * 2);
+  EXPECT_LT(a.held.size(), record.stage_total());
+  // Those that it waits for are fewer: the next stage is there while the last tasks of this one are rendered.
+  const size_t measured = record.plan()->measured * 2;
+  ASSERT_LT(measured, a.held.size());
+  const std::vector<HeldLease> rest(a.held.begin() + static_cast<ptrdiff_t>(measured), a.held.end());
+  a.held.resize(measured);
+  finish_all(a);
+  a.held = rest;
+  a.wanted = 0;
+  sync(a);
+  EXPECT_EQ(record.header.earlier_plans.size(), 1u);
+  EXPECT_GT(record.pending(), 0u);
 }
 
 TEST_F(SchedulerTest, ARestartGivesNobodyTheTasksOfACancelledJob) {
