@@ -166,6 +166,7 @@ TEST(Faults, APlanOfAutoOutlivesTheServerAndReplays) {
 
   spec.plan = summary.status.plan;
   spec.auto_plans = summary.auto_plans;
+  spec.earlier_plans = summary.earlier_plans;
   const JobId again = cluster.submit(spec);
   EXPECT_EQ(cluster.wait_end(again).state, JobState::kDone);
   Picture replayed;
