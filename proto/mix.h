@@ -14,12 +14,12 @@ enum class StrategyKind {
   kBsdf,                 ///< `bsdf`: direction from the material's lobes
   kArea,                 ///< `area`: point uniform on the light's surface
   kSolidAngle,           ///< `sa`: point uniform in the solid angle of the light's shape
-  kVisibleArea,          ///< `visible-area`: point uniform in the solid angle of what is visible of the light
   kLineArea,             ///< `line-area@DEG`: chord at DEG from edge u, offset by chord length
   kLineSolidAngleU,      ///< `line-sa@u`: chord parallel to edge u, uniform solid angle
   kLineSolidAngleV,      ///< `line-sa@v`: chord parallel to edge v, uniform solid angle
   kLineUniform,          ///< `line-uniform@DEG`: as kLineArea, but offset uniform across the light
   kLineAnalytic,         ///< `line-analytic@DEG`: Billen & Dutré 2016
+  kVisibleArea,          ///< `visible-area`: point uniform in the solid angle of what is visible of the light
 };
 
 /// True where the strategy chooses a line first and knows its visible part (`visible-area` has no line).

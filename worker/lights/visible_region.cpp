@@ -26,10 +26,6 @@ double cross(const Vec2d& a, const Vec2d& b) {
   return a.x * b.y - a.y * b.x;
 }
 
-bool comes_first(const Vec3d& a, const Vec3d& b) {
-  return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
-}
-
 }  // namespace
 
 double VisibleRegion::Polygon::area() const {
@@ -89,11 +85,12 @@ VisibleRegion::Side VisibleRegion::side_of(const Vec3d& n, double rounding) cons
 }
 
 VisibleRegion::Side VisibleRegion::side_along(const Vec3d& from, const Vec3d& to, double turn) const {
-  const bool forth = comes_first(from, to);
-  const Vec3d &a = forth ? from : to, &b = forth ? to : from, along = b - a;
-  // The product's components are right to a few roundings of |a| |b − a|, and so is its part along o, u and v.
-  const double rounding = 32 * kRoundoff * norm1(a) * norm1(along) * (norm1(o_) + norm1(u_) + norm1(v_));
-  return side_of(a.cross(along) * (forth == (turn > 0) ? 1 : -1), rounding);
+  const Vec3d along = to - from;
+  // The product's components are right to a few roundings of |from| |to − from|, and so is its part along o, u
+  // and v. The other triangle of the edge has it the other way round; both take the larger bound.
+  const double rounding = 32 * kRoundoff * (norm1(from) + norm1(to)) * norm1(along) *
+                          (norm1(o_) + norm1(u_) + norm1(v_));
+  return side_of(from.cross(along) * (turn > 0 ? 1 : -1), rounding);
 }
 
 bool VisibleRegion::subtract(const std::array<Vec3f, 3>& triangle) {
@@ -128,14 +125,9 @@ bool VisibleRegion::subtract(const std::array<Vec3f, 3>& triangle) {
       const int j = (i + 1) % 3;
       if (depth[i] > depth[inner]) inner = i;
       if ((depth[i] > 0) == (depth[j] > 0)) continue;
-      const bool forth = comes_first(q[i], q[j]);
-      const int a = forth ? i : j, b = forth ? j : i;
-      cut[cuts++] = q[a] + depth[a] / (depth[a] - depth[b]) * (q[b] - q[a]);
+      cut[cuts++] = q[i] + depth[i] / (depth[i] - depth[j]) * (q[j] - q[i]);
     }
-    const double side = cut[0].cross(cut[1] - cut[0]).dot(q[inner]);
-    const double turn_of_cut = comes_first(cut[0], cut[1]) ? side : -side;
-    shadow[sides++] = comes_first(cut[0], cut[1]) ? side_along(cut[0], cut[1], turn_of_cut)
-                                                  : side_along(cut[1], cut[0], turn_of_cut);
+    shadow[sides++] = side_along(cut[0], cut[1], cut[0].cross(cut[1] - cut[0]).dot(q[inner]));
   }
 
   before_.swap(pieces_);

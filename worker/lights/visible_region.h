@@ -71,7 +71,7 @@ class VisibleRegion {
   };
 
   Side side_of(const Vec3d& n, double rounding) const;
-  /// The side of the plane through x and an edge; both of its triangles get the same bits but for the sign.
+  /// Of the plane through x and an edge, turned by the sign of `turn`.
   Side side_along(const Vec3d& from, const Vec3d& to, double turn) const;
   bool subtract(const Polygon& piece, std::span<const Side> shadow);
   /// False: too many corners.

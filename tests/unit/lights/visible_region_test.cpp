@@ -122,6 +122,20 @@ TEST(VisibleRegion, OnlyWhatLiesBetweenHides) {
   EXPECT_NEAR(region_of(kQuad, kMiddle, wall).area_fraction(), 0.6, 1e-5);
 }
 
+TEST(VisibleRegion, TheWallAroundALightHidesNothing) {
+  // In the light's plane but for the roundings of its corners, whatever way that lies.
+  Random random(5);
+  for (int round = 0; round < 100; ++round) {
+    const Vec3d n = (Vec3d(random.in_box()) + Vec3d(0.31)).normalized();
+    const Vec3d s = n.cross({0.2, 1, 0.1}).normalized(), t = s.cross(n), o = Vec3d(random.in_box()) * 30;
+    const auto at = [&](double a, double b) { return Vec3f(o + s * a + t * b); };
+    const QuadShape light{at(0, 0), Vec3f(t), Vec3f(s)};
+    const Vec3d x = o + s * 0.4 + t * 0.3 + Vec3d(light.u).cross(Vec3d(light.v)) * 2.0;
+    const VisibleRegion region = region_of(light, x, {{{at(-3, -3), at(5, -3), at(1, 6)}}});
+    EXPECT_TRUE(region.whole()) << round;
+  }
+}
+
 TEST(VisibleRegion, ATriangulatedPlateHidesEverything) {
   // Neighbours share corners that are no round numbers; the plate is tilted and reaches behind x.
   Random random(7);
