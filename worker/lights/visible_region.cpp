@@ -204,10 +204,11 @@ void VisibleRegion::finish() {
       const Vec2d d = piece.corners[i] - c;
       return u_ * d.x + v_ * d.y;
     };
-    Vec3d edge = edge_to(1);
-    for (int i = 2; i < piece.size; ++i) {
+    // All triangles of a piece are one continuous map: strata stay whole.
+    Vec3d edge = edge_to(piece.size - 1);
+    for (int i = piece.size - 2; i > 0; --i) {
       const Vec3d next = edge_to(i);
-      Patch patch{SphericalTriangle(corner, edge, next), corner, edge, next, 0};
+      Patch patch{SphericalTriangle::about_corner(corner, next, edge), corner, next, edge, 0};
       edge = next;
       if (!(patch.seen.solid_angle() > 0)) continue;
       patch.up_to = sum += patch.seen.solid_angle();
