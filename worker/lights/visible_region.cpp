@@ -14,6 +14,10 @@ constexpr double kRoundoff = 0x1p-53;
 /// Pieces smaller than this part of the light are what roundings leave where two edges meet: a corner is right
 /// to some 2⁻⁵⁰ of the light's size, so that what opens between two copies of it has the square of that.
 constexpr double kSmallestPiece = 0x1p-64;
+/// Less than this in a shadow does not make it worth a cut; many such together are still no piece.
+constexpr double kSmallestCut = 0x1p-80;
+/// No piece as narrow as a line's rounding is larger.
+constexpr double kNarrowPiece = 0x1p-40;
 /// Occluders nearer to the light's plane than its roundings in single precision do not count: as for lines and
 /// for the ends of shadow segments (strategies: end_on_light).
 constexpr double kBeforeLight = 16 * std::numeric_limits<float>::epsilon();
@@ -24,6 +28,10 @@ double norm1(const Vec3d& v) {
 
 double cross(const Vec2d& a, const Vec2d& b) {
   return a.x * b.y - a.y * b.x;
+}
+
+bool comes_first(const Vec3d& a, const Vec3d& b) {
+  return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
 }
 
 }  // namespace
@@ -85,12 +93,13 @@ VisibleRegion::Side VisibleRegion::side_of(const Vec3d& n, double rounding) cons
 }
 
 VisibleRegion::Side VisibleRegion::side_along(const Vec3d& from, const Vec3d& to, double turn) const {
-  const Vec3d along = to - from;
-  // The product's components are right to a few roundings of |from| |to − from|, and so is its part along o, u
-  // and v. The other triangle of the edge has it the other way round; both take the larger bound.
-  const double rounding = 32 * kRoundoff * (norm1(from) + norm1(to)) * norm1(along) *
-                          (norm1(o_) + norm1(u_) + norm1(v_));
-  return side_of(from.cross(along) * (turn > 0 ? 1 : -1), rounding);
+  // Both triangles of an edge get the same bits but for the sign: what one takes for on the line is so for the
+  // other.
+  const bool forth = comes_first(from, to);
+  const Vec3d &a = forth ? from : to, &b = forth ? to : from, along = b - a;
+  // The product's components are right to a few roundings of |a| |b − a|, and so is its part along o, u and v.
+  const double rounding = 32 * kRoundoff * norm1(a) * norm1(along) * (norm1(o_) + norm1(u_) + norm1(v_));
+  return side_of(a.cross(along) * (forth == (turn > 0) ? 1 : -1), rounding);
 }
 
 bool VisibleRegion::subtract(const std::array<Vec3f, 3>& triangle) {
@@ -140,8 +149,14 @@ bool VisibleRegion::subtract(const std::array<Vec3f, 3>& triangle) {
 /// What is left of a convex piece: outside the first side, inside the first and outside the second, …
 bool VisibleRegion::subtract(const Polygon& piece, std::span<const Side> shadow) {
   for (const Side& side : shadow) {
-    bool outside = true;
-    for (const Vec2d& c : piece.all()) outside &= side.at(c) <= 0;
+    bool outside = true, on = true;
+    for (const Vec2d& c : piece.all()) {
+      const double at = side.at(c);
+      outside &= at <= 0;
+      on &= at == 0;
+    }
+    // Narrower than the rounding of the line that it lies on: it is outside both triangles of that edge.
+    if (on && piece.area() < kNarrowPiece) return true;
     if (outside) return keep(piece);
   }
   const size_t others = pieces_.size();
@@ -149,7 +164,7 @@ bool VisibleRegion::subtract(const Polygon& piece, std::span<const Side> shadow)
   for (const Side& side : shadow) {
     Polygon inside, outside;
     if (!split(rest, side, inside, outside)) return false;
-    if (!(inside.area() > kSmallestPiece)) {
+    if (!(inside.area() > kSmallestCut)) {
       // The shadow passes by: no need to have cut.
       pieces_.resize(others);
       return keep(piece);
