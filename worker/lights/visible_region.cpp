@@ -11,15 +11,16 @@ namespace penumbra {
 namespace {
 
 constexpr double kRoundoff = 0x1p-53;
-/// Pieces smaller than this part of the light are what roundings leave where two edges meet: a corner is right
-/// to some 2⁻⁵⁰ of the light's size, so that what opens between two copies of it has the square of that.
+/// Pieces smaller than this part of the light are what roundings leave where two edges meet: a corner is
+/// right to some 2⁻⁵⁰ of the light's size, so that what opens between two copies of it has the square of
+/// that.
 constexpr double kSmallestPiece = 0x1p-64;
 /// Less than this in a shadow does not make it worth a cut; many such together are still no piece.
 constexpr double kSmallestCut = 0x1p-80;
 /// No piece as narrow as a line's rounding is larger.
 constexpr double kNarrowPiece = 0x1p-40;
-/// Occluders nearer to the light's plane than its roundings in single precision do not count: as for lines and
-/// for the ends of shadow segments (strategies: end_on_light).
+/// Occluders nearer to the light's plane than its roundings in single precision do not count: as for lines
+/// and for the ends of shadow segments (strategies: end_on_light).
 constexpr double kBeforeLight = 16 * std::numeric_limits<float>::epsilon();
 
 double norm1(const Vec3d& v) {
@@ -93,11 +94,12 @@ VisibleRegion::Side VisibleRegion::side_of(const Vec3d& n, double rounding) cons
 }
 
 VisibleRegion::Side VisibleRegion::side_along(const Vec3d& from, const Vec3d& to, double turn) const {
-  // Both triangles of an edge get the same bits but for the sign: what one takes for on the line is so for the
-  // other.
+  // Both triangles of an edge get the same bits but for the sign: what one takes for on the line is so for
+  // the other.
   const bool forth = comes_first(from, to);
   const Vec3d &a = forth ? from : to, &b = forth ? to : from, along = b - a;
-  // The product's components are right to a few roundings of |a| |b − a|, and so is its part along o, u and v.
+  // The product's components are right to a few roundings of |a| |b − a|, and so is its part along o, u and
+  // v.
   const double rounding = 32 * kRoundoff * norm1(a) * norm1(along) * (norm1(o_) + norm1(u_) + norm1(v_));
   return side_of(a.cross(along) * (forth == (turn > 0) ? 1 : -1), rounding);
 }
@@ -115,8 +117,7 @@ bool VisibleRegion::subtract(const std::array<Vec3f, 3>& triangle) {
   // half-spaces through x wherever its corners are.
   const double length = across_.length();
   const Vec3d largest = o_ + x_;
-  const double before = depth_ - kBeforeLight * length *
-                                     (norm1(largest) + norm1(u_) + norm1(v_) + norm1(o_));
+  const double before = depth_ - kBeforeLight * length * (norm1(largest) + norm1(u_) + norm1(v_) + norm1(o_));
   double depth[3];
   int far = 0;
   for (int i = 0; i < 3; ++i) {

@@ -81,8 +81,8 @@ class VisibleRegion {
   Vec3d x_{0, 0, 0};
   Vec3d o_{0, 0, 0}, u_{0, 0, 0}, v_{0, 0, 0};  ///< of the light, o minus x
   Vec3d across_{0, 0, 0};                       ///< u × v: the emission side
-  double depth_ = 0;      ///< of the light's plane along −across, × |across|: > 0
-  double full_area_ = 1;  ///< of the light, in its coordinates
+  double depth_ = 0;                            ///< of the light's plane along −across, × |across|: > 0
+  double full_area_ = 1;                        ///< of the light, in its coordinates
   bool whole_ = false;
   std::vector<Polygon> pieces_, before_;
   std::vector<Patch> patches_;

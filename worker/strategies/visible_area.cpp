@@ -1,6 +1,6 @@
-// `visible-area`: points uniform in the solid angle of what is visible of a flat light (design §5.3). Where nothing
-// hides any of it, and where what hides it is too much to clip, these are the points of `sa`; in the second case
-// each needs its shadow ray.
+// `visible-area`: points uniform in the solid angle of what is visible of a flat light (design §5.3). Where
+// nothing hides any of it, and where what hides it is too much to clip, these are the points of `sa`; in the
+// second case each needs its shadow ray.
 #include "worker/strategies/strategy.h"
 
 namespace penumbra {

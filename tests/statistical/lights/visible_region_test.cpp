@@ -17,14 +17,20 @@ struct Lit {
   Vec3d x, horizon;
   std::vector<std::array<Vec3f, 3>> occluders;
 };
-const std::vector<Lit> kLit = {
-    {"one triangle", {0, 0, 0}, {0, 0, 0}, {{{{-0.3f, -0.2f, 0.3f}, {0.3f, -0.1f, 0.4f}, {0.1f, 0.3f, 0.3f}}}}},
-    {"near the light", {0.1, 0.2, 0.6}, {0, 0, 0},
-     {{{{0.1f, 0, 0.7f}, {0.4f, 0.3f, 0.7f}, {0, 0.5f, 0.65f}}}}},
-    {"overlapping, with a horizon", {0.2, 0.1, 0}, {0.7, 0.1, 0.3},
-     {{{{0.3f, -2, 0.3f}, {0.4f, 2, 0.3f}, {0.6f, 0, 0.3f}}},
-      {{{0, -0.1f, 0.2f}, {0.9f, 0.2f, 0.3f}, {0.2f, 0.25f, 0.2f}}},
-      {{{0.5f, 0.1f, 0.5f}, {0.9f, 0.5f, 0.5f}, {0.5f, 0.6f, 0.1f}}}}}};
+const std::vector<Lit> kLit = {{"one triangle",
+                                {0, 0, 0},
+                                {0, 0, 0},
+                                {{{{-0.3f, -0.2f, 0.3f}, {0.3f, -0.1f, 0.4f}, {0.1f, 0.3f, 0.3f}}}}},
+                               {"near the light",
+                                {0.1, 0.2, 0.6},
+                                {0, 0, 0},
+                                {{{{0.1f, 0, 0.7f}, {0.4f, 0.3f, 0.7f}, {0, 0.5f, 0.65f}}}}},
+                               {"overlapping, with a horizon",
+                                {0.2, 0.1, 0},
+                                {0.7, 0.1, 0.3},
+                                {{{{0.3f, -2, 0.3f}, {0.4f, 2, 0.3f}, {0.6f, 0, 0.3f}}},
+                                 {{{0, -0.1f, 0.2f}, {0.9f, 0.2f, 0.3f}, {0.2f, 0.25f, 0.2f}}},
+                                 {{{0.5f, 0.1f, 0.5f}, {0.9f, 0.5f, 0.5f}, {0.5f, 0.6f, 0.1f}}}}}};
 
 TEST(VisibleRegionSampling, FallsWhereItsDensitySays) {
   const Vec3d o(kQuad.o), u(kQuad.u), v(kQuad.v), across = u.cross(v);
@@ -52,7 +58,8 @@ TEST(VisibleRegionSampling, FallsWhereItsDensitySays) {
     for (int i = 0; i < kSamples; ++i) {
       const Vec3d d = region.sample(random_square(9, uint64_t(i))).p - o;
       const auto cell = [](double f) { return std::clamp(int(f * kCells), 0, kCells - 1); };
-      const double s = d.cross(v).dot(across) / across.length2(), t = u.cross(d).dot(across) / across.length2();
+      const double s = d.cross(v).dot(across) / across.length2(),
+                   t = u.cross(d).dot(across) / across.length2();
       ++hits[size_t(cell(s) * kCells + cell(t))];
     }
     EXPECT_LT(chi_square_sigmas(hits, probability), 4.5) << lit.name;

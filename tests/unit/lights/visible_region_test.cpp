@@ -26,7 +26,9 @@ class Random {
  public:
   explicit Random(uint64_t seed) : key_(seed) {}
   double uniform() { return penumbra::uniform(mix64(key_ = child_key(key_, 1))); }
-  Vec3f in_box() { return Vec3f(float(uniform() * 1.6 - 0.3), float(uniform() * 1.6 - 0.3), float(uniform() * 1.4 - 0.2)); }
+  Vec3f in_box() {
+    return Vec3f(float(uniform() * 1.6 - 0.3), float(uniform() * 1.6 - 0.3), float(uniform() * 1.4 - 0.2));
+  }
 
  private:
   uint64_t key_;
@@ -110,10 +112,10 @@ TEST(VisibleRegion, TheHorizonCuts) {
 
 TEST(VisibleRegion, OnlyWhatLiesBetweenHides) {
   std::vector<Triangle> elsewhere;
-  add_plate(elsewhere, -2, -2, 3, 3, -0.01f);  // behind x
-  add_plate(elsewhere, -2, -2, 3, 3, 1);       // in the light's plane
-  add_plate(elsewhere, -2, -2, 3, 3, 1.01f);   // beyond
-  add_plate(elsewhere, 2, -2, 3, 3, 0.5f);     // beside
+  add_plate(elsewhere, -2, -2, 3, 3, -0.01f);                                   // behind x
+  add_plate(elsewhere, -2, -2, 3, 3, 1);                                        // in the light's plane
+  add_plate(elsewhere, -2, -2, 3, 3, 1.01f);                                    // beyond
+  add_plate(elsewhere, 2, -2, 3, 3, 0.5f);                                      // beside
   elsewhere.push_back({{{0.5f, 0.5f, -1}, {0.5f, 0.5f, 2}, {0.5f, 5, 0.5f}}});  // edge on
   EXPECT_TRUE(region_of(kQuad, kMiddle, elsewhere).whole());
   // A wall through the light's plane hides what it does up to there.
@@ -170,7 +172,8 @@ TEST(VisibleRegion, OverlappingTrianglesAgainstRays) {
     const double full = round % 3 == 0 ? 0.5 : 1;
     const Vec3d x(random.uniform(), random.uniform(), 0.4 * random.uniform());
     std::vector<Triangle> occluders;
-    for (int i = 0; i < 1 + round % 8; ++i) occluders.push_back({random.in_box(), random.in_box(), random.in_box()});
+    for (int i = 0; i < 1 + round % 8; ++i)
+      occluders.push_back({random.in_box(), random.in_box(), random.in_box()});
     VisibleRegion region;
     region.reset(light, x, kNoHorizon);
     bool few = true;
