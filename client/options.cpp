@@ -117,7 +117,8 @@ void add_job_options(CLI::App& app, JobOptions& o) {
   app.add_option(
          "--mix", o.mixes,
          "strategy[:count] joined by +, then /combination; repeatable. "
-         "Strategies: bsdf area sa line-area@DEG line-uniform@DEG line-analytic@DEG line-sa@u line-sa@v. "
+         "Strategies: bsdf area sa visible-area line-area@DEG line-uniform@DEG line-analytic@DEG line-sa@u "
+         "line-sa@v. "
          "Combinations: /balance (default) /free /power /average /smooth=WIDTH|auto /smooth-ease=WIDTH|auto. "
          "Or auto, alone: the planner chooses for each tile. "
          "Default: the scene's Integrator \"pointline\", else auto")

@@ -56,6 +56,7 @@ absl::StatusOr<StrategyCount> parse_strategy(std::string_view word) {
   if (name == "bsdf") { s.kind = StrategyKind::kBsdf; return s; }
   if (name == "area") { s.kind = StrategyKind::kArea; return s; }
   if (name == "sa") { s.kind = StrategyKind::kSolidAngle; return s; }
+  if (name == "visible-area") { s.kind = StrategyKind::kVisibleArea; return s; }
   if (name == "line-sa@u") { s.kind = StrategyKind::kLineSolidAngleU; return s; }
   if (name == "line-sa@v") { s.kind = StrategyKind::kLineSolidAngleV; return s; }
   constexpr std::pair<std::string_view, StrategyKind> kAtAnAngle[] = {
@@ -68,8 +69,8 @@ absl::StatusOr<StrategyCount> parse_strategy(std::string_view word) {
     ASSIGN_OR_RETURN(s.angle_degrees, parse_angle(word, name));
     return s;
   }
-  return fault(word, "unknown strategy; there are bsdf, area, sa, line-area@DEG, line-sa@u, line-sa@v, "
-                     "line-uniform@DEG, line-analytic@DEG and, alone, auto");
+  return fault(word, "unknown strategy; there are bsdf, area, sa, visible-area, line-area@DEG, line-sa@u, "
+                     "line-sa@v, line-uniform@DEG, line-analytic@DEG and, alone, auto");
 }
 
 absl::Status parse_combination(std::string_view word, Mix& mix) {
@@ -99,6 +100,7 @@ std::string name_of(const StrategyCount& s) {
     case StrategyKind::kBsdf: return "bsdf";
     case StrategyKind::kArea: return "area";
     case StrategyKind::kSolidAngle: return "sa";
+    case StrategyKind::kVisibleArea: return "visible-area";
     case StrategyKind::kLineArea: return fmt::format("line-area@{}", s.angle_degrees);
     case StrategyKind::kLineSolidAngleU: return "line-sa@u";
     case StrategyKind::kLineSolidAngleV: return "line-sa@v";
@@ -124,7 +126,20 @@ std::string name_of(const Mix& mix) {
 }  // namespace
 
 bool is_line(StrategyKind kind) {
-  return kind != StrategyKind::kBsdf && kind != StrategyKind::kArea && kind != StrategyKind::kSolidAngle;
+  switch (kind) {
+    case StrategyKind::kBsdf:
+    case StrategyKind::kArea:
+    case StrategyKind::kSolidAngle:
+    case StrategyKind::kVisibleArea:
+      return false;
+    case StrategyKind::kLineArea:
+    case StrategyKind::kLineSolidAngleU:
+    case StrategyKind::kLineSolidAngleV:
+    case StrategyKind::kLineUniform:
+    case StrategyKind::kLineAnalytic:
+      return true;
+  }
+  std::abort();
 }
 
 int Mix::samples() const {

@@ -19,9 +19,10 @@ enum class StrategyKind {
   kLineSolidAngleV,      ///< `line-sa@v`: chord parallel to edge v, uniform solid angle
   kLineUniform,          ///< `line-uniform@DEG`: as kLineArea, but offset uniform across the light
   kLineAnalytic,         ///< `line-analytic@DEG`: Billen & Dutré 2016
+  kVisibleArea,          ///< `visible-area`: point uniform in the solid angle of what is visible of the light
 };
 
-/// True where the strategy chooses a line first and knows its visible part.
+/// True where the strategy chooses a line first and knows its visible part (`visible-area` has no line).
 bool is_line(StrategyKind kind);
 
 struct StrategyCount {

@@ -1,5 +1,6 @@
 #include "worker/geometry/shaft.h"
 
+#include "proto/status.h"
 #include "worker/geometry/line_fan.h"
 #include "worker/geometry/shaft_list.h"
 
@@ -26,6 +27,15 @@ Shaft::~Shaft() = default;
 
 size_t Shaft::listed() const {
   return content_ == ShaftContent::kFew ? static_cast<size_t>(parts_->list.size()) : 0;
+}
+
+std::array<Vec3f, 3> Shaft::triangle(size_t i) const {
+  PENUMBRA_CHECK(i < listed());
+  const TriangleBlock& block = parts_->list.blocks()[i / kWidth];
+  std::array<Vec3f, 3> corners;
+  for (int c = 0; c < 3; ++c)
+    for (int k = 0; k < 3; ++k) corners[size_t(c)][k] = block.p[c][k][i % kWidth];
+  return corners;
 }
 
 void ShaftList::finish() {

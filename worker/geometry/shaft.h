@@ -53,6 +53,8 @@ class Shaft {
   ShaftContent content() const { return content_; }
   /// Triangles that the list holds; 0 unless kFew.
   size_t listed() const;
+  /// Of the list, in the world: i < listed().
+  std::array<Vec3f, 3> triangle(size_t i) const;
 
   struct Parts;
 

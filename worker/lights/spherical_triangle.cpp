@@ -6,15 +6,25 @@
 #include "worker/lights/plane_side.h"
 
 namespace penumbra {
+namespace {
 
-SphericalTriangle::SphericalTriangle(const Vec3d& corner, const Vec3d& u, const Vec3d& v) {
+/// Most of the solid angle lies near the nearest vertex: measured from there, offsets along an edge keep their
+/// digits where they matter, and what cancels in sample() does so far out, in proportion to what is left there.
+int nearest_vertex(const Vec3d& corner, const Vec3d& u, const Vec3d& v) {
+  const double length2[3] = {corner.length2(), (corner + u).length2(), (corner + v).length2()};
+  return static_cast<int>(std::min_element(length2, length2 + 3) - length2);
+}
+
+}  // namespace
+
+SphericalTriangle::SphericalTriangle(const Vec3d& corner, const Vec3d& u, const Vec3d& v)
+    : SphericalTriangle(corner, u, v, nearest_vertex(corner, u, v)) {}
+
+SphericalTriangle::SphericalTriangle(const Vec3d& corner, const Vec3d& u, const Vec3d& v, int turn)
+    : turn_(turn) {
   const Vec3d vertex[3] = {corner, corner + u, corner + v},
               next_edge[3] = {u, v - u, -v};  // from vertex i to the next
   const double length[3] = {vertex[0].length(), vertex[1].length(), vertex[2].length()};
-  // Most of the solid angle lies near the nearest vertex: measured from there, offsets along an edge keep
-  // their digits where they matter, and what cancels in sample() does so far out, in proportion to what is
-  // left there.
-  turn_ = static_cast<int>(std::min_element(length, length + 3) - length);
   const int second = (turn_ + 1) % 3, third = (turn_ + 2) % 3;
   a_ = vertex[turn_];
   b_ = vertex[second];

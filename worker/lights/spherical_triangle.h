@@ -12,6 +12,12 @@ class SphericalTriangle {
   /// x have lost their digits where x is far. The triangle is seen only from the side of u × v; else its
   /// solid angle is 0.
   SphericalTriangle(const Vec3d& corner, const Vec3d& u, const Vec3d& v);
+  /// The same with a map that sweeps about the corner: the first number turns the arc through it from edge v to
+  /// edge u, so that neighbours in a fan continue each other. (The other constructor starts where most of the
+  /// solid angle is.)
+  static SphericalTriangle about_corner(const Vec3d& corner, const Vec3d& u, const Vec3d& v) {
+    return {corner, u, v, 2};
+  }
 
   /// sr
   double solid_angle() const { return omega_; }
@@ -22,6 +28,8 @@ class SphericalTriangle {
   Vec2d sample(const Vec2d& u) const;
 
  private:
+  SphericalTriangle(const Vec3d& corner, const Vec3d& u, const Vec3d& v, int turn);
+
   Vec3d normal_, a_, b_, edge_, base_;  ///< a, nearest to x; b; c − a; a − b
   int turn_;  ///< a_ is the constructor's vertex number turn_, and the others follow it
   double determinant_, omega_ = 0;

@@ -85,7 +85,7 @@ Rgb DirectLight::draw_lights(const ShadingPoint& point, const PassSampler& sampl
 
 LightView DirectLight::view_of(const ShadingPoint& point, size_t light) const {
   const LightSet& lights = scene_.lights;
-  if (light < lights.area.size()) return LightView(point, lights.area[light]);
+  if (light < lights.area.size()) return LightView(point, lights.area[light], &sight_);
   return LightView(point, lights.environments[light - lights.area.size()]);
 }
 
@@ -135,7 +135,8 @@ Rgb DirectLight::ask(const Task& task, const PassSampler& sampler, int depth) {
   start_combiner(task);
   // With drawn lights the material's hits are asked on their own, once.
   if (task.turns.empty() || !scene_.lights.draws()) gather_bsdf(task);
-  if (!task.turns.empty() && may_reach(task)) {
+  if (candidates_.empty() && task.turns.empty()) return integrated_;
+  if (may_reach(task)) {
     gather_points(task, sampler, depth);
     gather_lines(task, sampler, depth);
   }
@@ -164,10 +165,12 @@ void DirectLight::gather_points(const Task& task, const PassSampler& sampler, in
   for (size_t s = 0; s < mix_.slots(); ++s) {
     const PreparedMix::Slot slot = task.slot(mix_, s);
     if (is_bsdf(slot.strategy) || is_line(slot.strategy)) continue;
+    const bool visible = wants_region(slot.strategy) && task.view.region() != nullptr;
+    const Sight sight = visible ? Sight::kNoOpaque : Sight::kUnknown;
     for (const int turn : task.turns)
       for (int i = 0; i < slot.count; ++i) {
         const Vec2d u = numbers(task, s, turn, i, sampler, depth);
-        push(task, sample_point(slot.strategy, task.view, u), s, Sight::kUnknown, kNoLine, 0);
+        push(task, sample_point(slot.strategy, task.view, u), s, sight, kNoLine, 0);
       }
   }
 }
@@ -295,14 +298,16 @@ void DirectLight::densities(const Task& task, Candidate& c, double* row) {
 }
 
 bool DirectLight::may_reach(const Task& task) {
-  if (!task.view.is_area() || !scene_.lights.shafts) return true;
+  if (!task.view.is_area()) return true;
   VisibilityWork work;
   for (size_t s = 0; s < mix_.slots(); ++s) {
     const PreparedMix::Slot slot = task.slot(mix_, s);
     const int samples = slot.count * int(task.turns.size());
     if (is_line(slot.strategy)) work.lines += samples;
     else if (!is_bsdf(slot.strategy)) work.rays += samples;
+    work.region |= wants_region(slot.strategy);
   }
+  if (!scene_.lights.shafts && !work.region) return true;
   return sight_.look(scene_.geometry, task.view.point(), task.view.area(), task.light, work, counters_);
 }
 
@@ -310,8 +315,11 @@ bool DirectLight::clear(const Task& task, const LightSample& sample) {
   const Vec3f& origin = task.view.point().origin(sample.wi);
   if (!task.view.is_area())
     return !scene_.geometry.occluded(origin, origin + sample.wi * scene_.lights.reach(), counters_);
+  if (const VisibleRegion* region = task.view.region(); region != nullptr && !region->holds(sample.at.p))
+    return false;
   if (task.view.area().flat) {
     const Vec3f end = end_on_light(sample.at, task.view.x());
+    if (task.view.region() != nullptr) return !scene_.geometry.occluded_by_alpha(origin, end, counters_);
     const Shaft* shaft = sight_.for_rays(origin);
     return !(shaft != nullptr ? scene_.geometry.occluded(*shaft, origin, end, counters_)
                               : scene_.geometry.occluded(origin, end, counters_));
@@ -354,12 +362,13 @@ Rgb DirectLight::combine() {
 DirectLight::Integrand DirectLight::integrand(const ShadingPoint& point, size_t area_emitter,
                                               const Vec3d& on_light) {
   const AreaEmitter& emitter = scene_.lights.area[area_emitter];
-  const LightView view(point, emitter);
+  const LightView view = view_of(point, area_emitter);
   const Task task{view, area_emitter, 1};
   const LightSample sample = towards(view, {on_light, emission_normal(emitter.shape, on_light), 0});
   candidates_.assign(1, {sample, point.scatter(sample.wi) * sample.radiance, mix_.slots(), kNoLine});
   own_lines_.clear();
   sight_.skip();
+  may_reach(task);
   resolve(task);
   start_combiner(task);
   Integrand out{candidates_[0].f, candidates_[0].smoothing, densities_, {}};

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "proto/status.h"
+#include "worker/strategies/light_sight.h"
 
 namespace penumbra {
 namespace {
@@ -34,6 +35,11 @@ Strategy fit_point(const LightShape& shape) {
   return AreaStrategy{};
 }
 
+/// What polygon_of() (light_sight.h) knows.
+bool is_polygon(const LightShape& shape) {
+  return std::holds_alternative<QuadShape>(shape) || std::holds_alternative<TriangleShape>(shape);
+}
+
 template <class Lines = LineAreaStrategy>
 Strategy fit_line_area(double radians, const LightShape& shape) {
   if (has_line_area(shape)) return Lines{radians, ParallelChords(shape, radians)};
@@ -56,6 +62,8 @@ Strategy fit(const StrategyCount& wanted, const AreaEmitter& emitter) {
       return AreaStrategy{};
     case StrategyKind::kSolidAngle:
       return fit_point(shape);
+    case StrategyKind::kVisibleArea:
+      return is_polygon(shape) ? Strategy{VisibleAreaStrategy{}} : fit_point(shape);
     case StrategyKind::kLineArea:
       return fit_line_area(wanted.angle_degrees * kDegree, shape);
     case StrategyKind::kLineSolidAngleU:
@@ -87,6 +95,7 @@ std::string name_of(const Strategy& strategy) {
     std::string operator()(const BsdfStrategy&) const { return "bsdf"; }
     std::string operator()(const AreaStrategy&) const { return "area"; }
     std::string operator()(const SolidAngleStrategy&) const { return "sa"; }
+    std::string operator()(const VisibleAreaStrategy&) const { return "visible-area"; }
     std::string operator()(const EnvironmentStrategy&) const { return "its own luminance"; }
     std::string operator()(const LineAreaStrategy& s) const {
       return fmt::format("line-area@{:g}", s.radians / kDegree);
@@ -120,6 +129,14 @@ bool is_analytic(const Strategy& strategy) {
 
 bool is_bsdf(const Strategy& strategy) {
   return std::holds_alternative<BsdfStrategy>(strategy);
+}
+
+bool wants_region(const Strategy& strategy) {
+  return std::holds_alternative<VisibleAreaStrategy>(strategy);
+}
+
+const VisibleRegion* LightView::region() const {
+  return sight_ != nullptr ? sight_->region() : nullptr;
 }
 
 LightSample sample_point(const Strategy& strategy, const LightView& view, const Vec2d& u) {

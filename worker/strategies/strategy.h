@@ -13,9 +13,12 @@
 #include "worker/lights/emitter.h"
 #include "worker/lights/line.h"
 #include "worker/lights/shape.h"
+#include "worker/lights/visible_region.h"
 #include "worker/strategies/shading_point.h"
 
 namespace penumbra {
+
+class LightSight;
 
 /// `bsdf`: the direction comes from the material; the point is what the traced ray meets.
 struct BsdfStrategy {};
@@ -23,6 +26,9 @@ struct BsdfStrategy {};
 struct AreaStrategy {};
 /// `sa`: uniform in the solid angle of the shape.
 struct SolidAngleStrategy {};
+/// `visible-area`: uniform in the solid angle of what is visible of a flat light (LightView::region). Where that
+/// is not known it is `sa`.
+struct VisibleAreaStrategy {};
 /// The environment's own sampling by luminance; stands for `area`, `sa` and lines there.
 struct EnvironmentStrategy {};
 /// `line-area@DEG`. The chords do not depend on the shading point: they are made once per light.
@@ -47,8 +53,8 @@ struct LineSolidAngleStrategy {
 };
 
 using Strategy =
-    std::variant<BsdfStrategy, AreaStrategy, SolidAngleStrategy, EnvironmentStrategy, LineAreaStrategy,
-                 LineUniformStrategy, LineAnalyticStrategy, LineSolidAngleStrategy>;
+    std::variant<BsdfStrategy, AreaStrategy, SolidAngleStrategy, VisibleAreaStrategy, EnvironmentStrategy,
+                 LineAreaStrategy, LineUniformStrategy, LineAnalyticStrategy, LineSolidAngleStrategy>;
 
 /// What a mix's strategy is in the company of the others: itself, but for `line-analytic`. A line as a whole
 /// has no density at a point, so weights of a point cannot know it: where they are asked for, it is
@@ -61,13 +67,17 @@ Strategy fit_environment(const StrategyCount& wanted);
 std::string name_of(const Strategy& strategy);
 bool is_line(const Strategy& strategy);
 bool is_bsdf(const Strategy& strategy);
+/// Does it ask for LightView::region()?
+bool wants_region(const Strategy& strategy);
 /// Does closed_form() give a part of what a line scatters, so that its points are for the rest alone?
 bool is_analytic(const Strategy& strategy);
 
 /// One light as it is seen from one shading point; what strategies share is made once, when first asked.
 class LightView {
  public:
-  LightView(const ShadingPoint& point, const AreaEmitter& emitter) : point_(&point), area_(&emitter) {}
+  /// `sight`: what is known of the light's visibility while it is asked; null: nothing.
+  LightView(const ShadingPoint& point, const AreaEmitter& emitter, const LightSight* sight = nullptr)
+      : point_(&point), area_(&emitter), sight_(sight) {}
   LightView(const ShadingPoint& point, const Environment& environment)
       : point_(&point), environment_(&environment) {}
 
@@ -80,11 +90,14 @@ class LightView {
     if (!seen_) seen_.emplace(area_->shape, x());
     return *seen_;
   }
+  /// What is visible of the light; null where that is not known (or no strategy wants to know).
+  const VisibleRegion* region() const;
 
  private:
   const ShadingPoint* point_;
   const AreaEmitter* area_ = nullptr;
   const Environment* environment_ = nullptr;
+  const LightSight* sight_ = nullptr;
   mutable std::optional<SeenShape> seen_;
 };
 
@@ -99,12 +112,14 @@ struct LightSample {
 /// Only for the strategies that are neither bsdf nor lines.
 LightSample sample(const AreaStrategy&, const LightView& view, const Vec2d& u);
 LightSample sample(const SolidAngleStrategy&, const LightView& view, const Vec2d& u);
+LightSample sample(const VisibleAreaStrategy&, const LightView& view, const Vec2d& u);
 LightSample sample(const EnvironmentStrategy&, const LightView& view, const Vec2d& u);
 
 /// Density of sample() at a direction that some strategy found, sr⁻¹.
 double pdf(const BsdfStrategy&, const LightView& view, const LightSample& s);
 double pdf(const AreaStrategy&, const LightView& view, const LightSample& s);
 double pdf(const SolidAngleStrategy&, const LightView& view, const LightSample& s);
+double pdf(const VisibleAreaStrategy&, const LightView& view, const LightSample& s);
 double pdf(const EnvironmentStrategy&, const LightView& view, const LightSample& s);
 
 /// The line that a line strategy draws with u in [0,1), or the one that passes through a point.

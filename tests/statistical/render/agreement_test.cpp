@@ -37,7 +37,9 @@ TEST(Agreement, RectangleLight) {
                    {"bsdf:8", "area:2", "sa:2", "line-area@0:2", "line-area@90:1", "line-area@33:2", "line-sa@u:2",
                     "line-sa@v:1", "bsdf:1+sa:1", "bsdf:1+line-sa@u:2", "line-sa@u:1+line-sa@v:1",
                     "area:1+line-area@90:1", "line-area@0:1+line-area@90:1/average", "bsdf:1+line-sa@v:2/free",
-                    "sa:1+line-area@45:1/free", "bsdf:1+sa:2/power", "bsdf:1+line-sa@u:1/power"},
+                    "sa:1+line-area@45:1/free", "bsdf:1+sa:2/power", "bsdf:1+line-sa@u:1/power",
+                    "visible-area:2", "bsdf:1+visible-area:2", "sa:1+visible-area:1/free", "area:1+visible-area:1/average",
+                    "visible-area:1+line-sa@v:1", "visible-area:2+line-sa@u:1/smooth=auto"},
                    64);
 }
 
@@ -53,7 +55,7 @@ TEST(Agreement, AutoWithADifferentCandidateInEveryTile) {
 TEST(Agreement, StratifiedAndSobolSamplers) {
   for (SamplerKind sampler : {SamplerKind::kStratified, SamplerKind::kSobol})
     expect_agreement(test::load_text(kHead + kBlocker + area_light(kQuad)),
-                     {"sa:4", "line-sa@u:4", "bsdf:2+line-sa@v:2", "line-area@60:3"}, 64, sampler, 8);
+                     {"sa:4", "line-sa@u:4", "bsdf:2+line-sa@v:2", "line-area@60:3", "visible-area:4"}, 64, sampler, 8);
 }
 
 TEST(Agreement, ObliqueQuadTriangleAndTwoSided) {
@@ -63,7 +65,8 @@ TEST(Agreement, ObliqueQuadTriangleAndTwoSided) {
                                  "\"bool twosided\" true") +
                       area_light(R"(Shape "trianglemesh" "integer indices" [ 0 1 2 ] "point P" [ 0.5 1.9 -0.5  1.9 1.7 -0.4  1 1.6 0.8 ])",
                                  "\"bool twosided\" true")),
-      {"bsdf:8", "area:2", "sa:2", "line-area@0:2", "line-area@70:2", "line-sa@v:1", "bsdf:1+line-area@20:2"}, 64);
+      {"bsdf:8", "area:2", "sa:2", "line-area@0:2", "line-area@70:2", "line-sa@v:1", "bsdf:1+line-area@20:2",
+       "visible-area:2", "bsdf:1+visible-area:1"}, 64);
 }
 
 TEST(Agreement, CurvedLights) {
@@ -72,7 +75,7 @@ TEST(Agreement, CurvedLights) {
                       area_light(R"(Translate -1.5 1.6 0 Shape "sphere" "float radius" 0.4)") +
                       area_light(R"(Translate 1.5 1.9 0 Rotate 100 1 0 0 Shape "disk" "float radius" 0.5)") +
                       area_light(R"(Translate 0 1.4 -1.5 Shape "cylinder" "float radius" 0.2 "float zmin" -0.5 "float zmax" 0.5)")),
-      {"bsdf:8", "area:3", "sa:3", "line-sa@u:2", "bsdf:2+sa:2"}, 96);
+      {"bsdf:8", "area:3", "sa:3", "line-sa@u:2", "bsdf:2+sa:2", "bsdf:2+visible-area:2"}, 96);
 }
 
 TEST(Agreement, EnvironmentAndDeltaLights) {
@@ -88,7 +91,8 @@ TEST(Agreement, TranslucentReceiverBetweenLights) {
       test::load_text(kHead + R"(Material "translucent" "rgb Kd" [ 0.4 0.4 0.4 ] "rgb Ks" [ 0 0 0 ] "rgb reflect" [ 0.5 0.5 0.5 ] "rgb transmit" [ 0.5 0.5 0.5 ]
 Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ] "point P" [ -1.5 0.2 0  1.5 0.2 0  1.5 1.9 -0.3  -1.5 1.9 -0.3 ]
 )" + area_light(R"(Shape "quad" "point o" [ -0.5 2.4 -1.8 ] "vector u" [ 1 0 0 ] "vector v" [ 0 0 3.2 ])")),
-      {"bsdf:8", "sa:4", "line-sa@u:2", "line-sa@v:2", "line-area@90:2", "bsdf:1+line-sa@v:2"}, 96);
+      {"bsdf:8", "sa:4", "line-sa@u:2", "line-sa@v:2", "line-area@90:2", "bsdf:1+line-sa@v:2",
+       "visible-area:2", "bsdf:1+visible-area:2"}, 96);
 }
 
 TEST(Agreement, ManyLightsAreDrawn) {
@@ -96,7 +100,8 @@ TEST(Agreement, ManyLightsAreDrawn) {
   for (int i = 0; i < 24; ++i)
     text += area_light("Translate " + std::to_string(-2.2 + 0.8 * (i % 6)) + " 0 " + std::to_string(-1.6 + 0.9 * (i / 6)) +
                        R"( Shape "quad" "point o" [ 0 2 0 ] "vector u" [ 0.3 0 0 ] "vector v" [ 0 0 0.25 ])");
-  expect_agreement(test::load_text(text), {"bsdf:8", "sa:1", "bsdf:2+sa:1", "bsdf:1+line-sa@u:1", "line-sa@v:1"}, 32);
+  expect_agreement(test::load_text(text), {"bsdf:8", "sa:1", "bsdf:2+sa:1", "bsdf:1+line-sa@u:1", "line-sa@v:1",
+                                           "visible-area:1", "bsdf:2+visible-area:1"}, 32);
 }
 
 TEST(Agreement, InstancesAndAlpha) {
@@ -113,7 +118,8 @@ ObjectEnd
         return s;
       }() + R"(Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ] "point P" [ -1.5 1.2 -1  0.2 1.2 -1  0.2 1.2 1  -1.5 1.2 1 ] "float uv" [ 0 0 1 0 1 1 0 1 ] "texture alpha" "holes"
 )" + area_light(kQuad)),
-      {"bsdf:8", "sa:2", "line-area@0:2", "line-sa@u:2", "line-sa@v:2", "bsdf:1+line-sa@u:2", "area:1+line-sa@v:1"}, 64);
+      {"bsdf:8", "sa:2", "line-area@0:2", "line-sa@u:2", "line-sa@v:2", "bsdf:1+line-sa@u:2", "area:1+line-sa@v:1",
+       "visible-area:2", "bsdf:1+visible-area:2", "sa:1+visible-area:1"}, 64);
 }
 
 }  // namespace

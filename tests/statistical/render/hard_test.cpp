@@ -32,7 +32,11 @@ const std::vector<std::string> kEveryStrategy = {"bsdf:4",
                                                  "area:1+line-sa@v:1",
                                                  "bsdf:1+line-sa@u:1/power",
                                                  "sa:1+line-area@60:1/free",
-                                                 "line-area@0:1+line-sa@v:1/average"};
+                                                 "line-area@0:1+line-sa@v:1/average",
+                                                 "visible-area:2",
+                                                 "bsdf:1+visible-area:1",
+                                                 "visible-area:1+line-sa@u:1",
+                                                 "sa:1+visible-area:1/power"};
 
 test::AgreementSpec small(int64_t passes) {
   test::AgreementSpec how;
@@ -60,7 +64,8 @@ TEST(HardScenes, ReceiverTouchesTheLight) {
   test::expect_agreement(hard_scene("touching"),
                          {"bsdf:4", "sa:2", "line-sa@u:1", "line-sa@v:1", "area:1+sa:1", "bsdf:1+sa:1",
                           "sa:1+line-area@0:1", "sa:1+line-area@90:1", "sa:1+line-area@37:1",
-                          "bsdf:1+line-sa@v:1", "sa:1+line-sa@u:1/free", "bsdf:1+line-sa@u:1/power"},
+                          "bsdf:1+line-sa@v:1", "sa:1+line-sa@u:1/free", "bsdf:1+line-sa@u:1/power",
+                          "visible-area:2", "bsdf:1+visible-area:1"},
                          small(32));
 }
 
@@ -73,7 +78,7 @@ TEST(HardScenes, TinyLight) {
       hard_scene("tiny"),
       {"area:1", "sa:1", "line-area@0:1", "line-area@90:1", "line-area@37:1", "line-sa@u:1", "line-sa@v:1",
        "bsdf:1+sa:1", "bsdf:1+line-sa@u:1", "area:1+line-sa@v:1/power", "bsdf:1+line-area@0:1/free",
-       "line-area@0:1+line-sa@v:1/average"},
+       "line-area@0:1+line-sa@v:1/average", "visible-area:1", "area:1+visible-area:1"},
       small(16));
 }
 
@@ -87,7 +92,7 @@ TEST(HardScenes, TenThousandSlats) {
   how.height = 24;
   test::expect_agreement(hard_scene("blinds"),
                          {"bsdf:4", "area:4", "sa:4", "line-area@0:1", "line-area@90:1", "line-sa@u:1",
-                          "line-sa@v:1", "bsdf:1+line-sa@v:1"},
+                          "line-sa@v:1", "bsdf:1+line-sa@v:1", "visible-area:2", "bsdf:1+visible-area:1"},
                          how);
 }
 

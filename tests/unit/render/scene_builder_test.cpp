@@ -75,6 +75,9 @@ TEST(SceneBuilder, SubstitutionsNameShapeCountAndStandIn) {
   const auto said = substitutions(*scene, parse_mix("line-sa@u:1+bsdf:1").value());
   ASSERT_EQ(said.size(), 1u);
   EXPECT_EQ(said[0], "line-sa@u on 1 sphere light: sa");
+  const auto visible = substitutions(*scene, parse_mix("visible-area:2").value());
+  ASSERT_EQ(visible.size(), 1u);
+  EXPECT_EQ(visible[0], "visible-area on 1 sphere light: sa");
   // Weights of a point cannot know a line that is integrated as a whole.
   const auto weighed = substitutions(*scene, parse_mix("line-analytic@0+bsdf").value());
   ASSERT_EQ(weighed.size(), 2u);

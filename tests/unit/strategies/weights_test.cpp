@@ -52,7 +52,8 @@ TEST_F(Weights, SumToOneAtEveryPointThatIsSeen) {
        {"bsdf:1+line-sa@u:2", "bsdf:3+sa:1+line-sa@v:1/power", "bsdf:1+area:2+line-area@30:1/free",
         "bsdf:1+line-sa@u:1/average", "bsdf:2+line-sa@u:1/smooth=0.3",
         "sa:1+line-sa@u:1+line-sa@v:3/smooth=auto", "bsdf:1+line-area@40:1/smooth-ease=0.1",
-        "bsdf:1+area:1+line-area@0:1+line-sa@u:1/smooth-ease=auto"}) {
+        "bsdf:1+area:1+line-area@0:1+line-sa@u:1/smooth-ease=auto", "bsdf:1+visible-area:3",
+        "sa:1+visible-area:1+line-sa@v:1/power"}) {
     const Mix mix = parse_mix(text).value();
     const PreparedMix prepared(mix, scene_->lights);
     DirectLight direct({*scene_->geometry, scene_->lights}, prepared, counters_);
