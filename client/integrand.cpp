@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <map>
 
-#include "client/png.h"
+#include "film/png.h"
 #include "film/atomic_file.h"
 #include "film/exr.h"
 #include "proto/status.h"

@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "film/own_error.h"
+#include "film/png.h"
 #include "proto/status.h"
 #include "server/assembler.h"
-#include "server/http_png.h"
 #include "server/job_report.h"
 
 namespace penumbra {
@@ -154,7 +154,7 @@ std::string preview_png(const FilmImage& image, double exposure) {
       for (size_t c = 0; c < 3; ++c)
         bytes.push_back(count == 0 ? kUnseen[c] : srgb(exposure * sum[c] / count));
     }
-  return png(width, height, bytes);
+  return png_bytes(width, height, bytes, PngEffort::kQuick);
 }
 
 std::shared_ptr<const Preview> Previews::fresh(const JobId& job, double now) {

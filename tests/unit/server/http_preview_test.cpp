@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
-#include "server/http_png.h"
+#include "film/png.h"
 
 namespace penumbra {
 namespace {
@@ -19,7 +19,7 @@ struct Decoded {
   std::string rows;  ///< filter byte, then RGB
 };
 
-/// Reads what png() writes: every chunk's CRC, one IDAT.
+/// Reads what png_bytes() writes: every chunk's CRC, one IDAT.
 Decoded decode(const std::string& file) {
   Decoded out;
   EXPECT_EQ(file.substr(0, 8), "\x89PNG\r\n\x1a\n");
@@ -54,7 +54,7 @@ FilmImage constant(int width, int height, float value) {
 }
 
 TEST(Png, HoldsTheBytes) {
-  const Decoded d = decode(png(2, 2, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 255}));
+  const Decoded d = decode(png_bytes(2, 2, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 255}, PngEffort::kQuick));
   EXPECT_EQ(d.width, 2u);
   EXPECT_EQ(d.height, 2u);
   EXPECT_EQ(d.rows, std::string("\0\x01\x02\x03\x04\x05\x06\0\x07\x08\x09\x0a\x0b\xff", 14));

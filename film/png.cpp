@@ -1,4 +1,4 @@
-#include "client/png.h"
+#include "film/png.h"
 
 #include <zlib.h>
 
@@ -24,7 +24,7 @@ std::string chunk(std::string_view type, const std::string& data) {
 
 }  // namespace
 
-std::string png_bytes(int width, int height, const std::vector<uint8_t>& rgb) {
+std::string png_bytes(int width, int height, const std::vector<uint8_t>& rgb, PngEffort effort) {
   const size_t row = 3 * static_cast<size_t>(width);
   PENUMBRA_CHECK(width > 0 && height > 0 && rgb.size() == row * static_cast<size_t>(height));
   std::string raw;  // each row after its filter's number: none
@@ -36,7 +36,7 @@ std::string png_bytes(int width, int height, const std::vector<uint8_t>& rgb) {
   std::string packed(size, '\0');
   PENUMBRA_CHECK(compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
                            reinterpret_cast<const Bytef*>(raw.data()), raw.size(),
-                           Z_DEFAULT_COMPRESSION) == Z_OK);
+                           effort == PngEffort::kQuick ? Z_BEST_SPEED : Z_DEFAULT_COMPRESSION) == Z_OK);
   packed.resize(size);
   const std::string header = big_endian(static_cast<uint32_t>(width)) +
                              big_endian(static_cast<uint32_t>(height)) +
