@@ -173,16 +173,8 @@ void Scheduler::lose_results(const JobId& id, const std::vector<std::pair<uint64
 
 /// Plans when the pilot is done, and anew at the borders of stages; ends the job when everything is.
 void Scheduler::advance(JobRecord& job, const Now& now) {
-  if (job.ready_to_plan()) {
-    const absl::Status status = job.make_run();
-    if (!status.ok()) {
-      finish(job, JobState::kFailed, FailureKind::kJobFailed, message_of(status), now);
-      return;
-    }
-    put(PutJob{job.header});
-  }
-  while (job.ready_to_replan()) {
-    const absl::Status status = job.replan();
+  while (job.ready_to_plan() || job.ready_to_replan()) {
+    const absl::Status status = job.ready_to_plan() ? job.make_run() : job.replan();
     if (!status.ok()) {
       finish(job, JobState::kFailed, FailureKind::kJobFailed, message_of(status), now);
       return;
