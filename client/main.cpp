@@ -28,7 +28,8 @@ int main(int argc, char** argv) {
     add(app, chosen);
   try {
     // CLI11 would only say that a command is missing.
-    if (argc > 1 && argv[1][0] != '-' && app.get_subcommands([&](CLI::App* known) { return known->check_name(argv[1]); }).empty())
+    const auto named = [&](CLI::App* command) { return command->check_name(argv[1]); };
+    if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(named).empty())
       throw CLI::ParseError(std::string("there is no command '") + argv[1] + "'", CLI::ExitCodes::ExtrasError);
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {

@@ -33,8 +33,8 @@ class BlobWriter {
 
   /// InvalidArgument beyond the announced size; ResourceExhausted if the disk is full.
   absl::Status append(std::string_view bytes);
-  /// Verifies, makes durable (unless BlobFolder::sync() will, or the folder's durability asks for no flush), renames. InvalidArgument if size or digest
-  /// do not fit: bytes with another digest are thrown away.
+  /// Verifies, makes durable (unless BlobFolder::sync() will, or the folder's durability asks for no flush),
+  /// renames. InvalidArgument if size or digest do not fit: bytes with another digest are thrown away.
   absl::Status finish(bool flush = true);
   /// Forgets what has been written: the next writer begins anew.
   void discard();
