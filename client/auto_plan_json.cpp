@@ -1,6 +1,7 @@
 #include "client/auto_plan_json.h"
 
 #include "proto/auto_plan.h"
+#include "proto/blocks.h"
 #include "proto/status.h"
 #include "proto/tiles.h"
 
@@ -8,7 +9,7 @@ namespace penumbra {
 namespace {
 
 /// May throw what nlohmann::json throws for a missing key or a wrong type.
-absl::StatusOr<AutoPlan> read(const Json& json, size_t tiles) {
+absl::StatusOr<AutoPlan> read(const Json& json, const std::vector<PixelRect>& rects) {
   AutoPlan plan;
   plan.mix = json.at("mix").get<int>();
   for (const Json& text : json.at("candidates")) {
@@ -17,14 +18,22 @@ absl::StatusOr<AutoPlan> read(const Json& json, size_t tiles) {
     plan.candidates.push_back(std::move(mix));
   }
   for (const Json& tile : json.at("tiles")) {
-    const TilePlan read{tile.at("candidate").get<int>(), tile.at("passes").get<int64_t>()};
+    TilePlan read{tile.at("candidate").get<int>(), tile.at("passes").get<int64_t>()};
+    for (const int share : tile.value("shares", std::vector<int>())) {
+      if (share < 1 || share > kWholeShare) return invalid_input("auto_plans: a share of {}", share);
+      read.shares.push_back(static_cast<uint8_t>(share));
+    }
     if (read.candidate < 0 || read.candidate >= static_cast<int>(plan.candidates.size()))
       return invalid_input("auto_plans: candidate {} of {}", read.candidate, plan.candidates.size());
     if (read.passes < 1) return invalid_input("auto_plans: {} passes", read.passes);
-    plan.tiles.push_back(read);
+    plan.tiles.push_back(std::move(read));
   }
-  if (plan.tiles.size() != tiles)
-    return invalid_input("auto_plans: {} tiles, where the job has {}", plan.tiles.size(), tiles);
+  if (plan.tiles.size() != rects.size())
+    return invalid_input("auto_plans: {} tiles, where the job has {}", plan.tiles.size(), rects.size());
+  for (size_t t = 0; t < rects.size(); ++t)
+    if (!shares_fit(rects[t], plan.tiles[t].shares))
+      return invalid_input("auto_plans: {} shares, where the tile has {} blocks", plan.tiles[t].shares.size(),
+                           block_count(rects[t]));
   return plan;
 }
 
@@ -37,11 +46,14 @@ Json auto_plans_json(const JobSpec& spec, const std::vector<AutoPlan>& plans) {
     PENUMBRA_CHECK(plan.tiles.size() == rects.size());
     Json candidates = Json::array(), tiles = Json::array();
     for (const Mix& mix : plan.candidates) candidates.push_back(label(mix));
-    for (size_t t = 0; t < rects.size(); ++t)
+    for (size_t t = 0; t < rects.size(); ++t) {
       tiles.push_back({{"rect", to_json(rects[t])},
                        {"candidate", plan.tiles[t].candidate},
                        {"mix", candidates[static_cast<size_t>(plan.tiles[t].candidate)]},
                        {"passes", plan.tiles[t].passes}});
+      // Blocks of 8 x 8 pixels, row by row: their shares in the passes, in 1/255 (proto/blocks.h).
+      if (!plan.tiles[t].shares.empty()) tiles.back()["shares"] = plan.tiles[t].shares;
+    }
     out.push_back({{"mix", plan.mix}, {"candidates", candidates}, {"tiles", tiles}});
   }
   return out;
@@ -49,10 +61,10 @@ Json auto_plans_json(const JobSpec& spec, const std::vector<AutoPlan>& plans) {
 
 absl::StatusOr<std::vector<AutoPlan>> auto_plans_from_json(const Json& json, const JobSpec& spec) {
   std::vector<AutoPlan> plans;
-  const size_t tiles = tiles_of(spec).size();
+  const std::vector<PixelRect> rects = tiles_of(spec);
   try {
     for (const Json& one : json) {
-      ASSIGN_OR_RETURN(AutoPlan plan, read(one, tiles));
+      ASSIGN_OR_RETURN(AutoPlan plan, read(one, rects));
       plans.push_back(std::move(plan));
     }
   } catch (const Json::exception& fault) {

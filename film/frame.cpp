@@ -11,16 +11,17 @@ Moments moments_at(const Frame& frame, size_t pixel, size_t channel) {
   return {frame.groups[pixel], static_cast<double>(frame.passes[pixel]), frame.mean[i], frame.m2[i]};
 }
 
-void merge_pixel(Frame& frame, size_t pixel, const TileView& tile, size_t source) {
+void merge_pixel(Frame& frame, size_t pixel, const TileView& tile, size_t source,
+                 const std::pair<int64_t, int64_t>& counts) {
+  const auto [passes, groups] = counts;
   for (size_t c = 0; c < 3; ++c) {
     Moments sum = moments_at(frame, pixel, c);
-    sum.merge(
-        {tile.groups, static_cast<double>(tile.passes), tile.mean[3 * source + c], tile.m2[3 * source + c]});
+    sum.merge({groups, static_cast<double>(passes), tile.mean[3 * source + c], tile.m2[3 * source + c]});
     frame.mean[3 * pixel + c] = sum.mean;
     frame.m2[3 * pixel + c] = sum.m2;
   }
-  frame.passes[pixel] += tile.passes;
-  frame.groups[pixel] += tile.groups;
+  frame.passes[pixel] += passes;
+  frame.groups[pixel] += groups;
   frame.cost[pixel] += tile.cost[source];
 }
 
@@ -50,7 +51,7 @@ void merge(Frame& frame, const TileView& tile) {
   for (int y = tile.rect.y0; y < tile.rect.y1; ++y) {
     size_t pixel =
         static_cast<size_t>(y - frame.crop.y0) * stride + static_cast<size_t>(tile.rect.x0 - frame.crop.x0);
-    for (int x = tile.rect.x0; x < tile.rect.x1; ++x) merge_pixel(frame, pixel++, tile, source++);
+    for (int x = tile.rect.x0; x < tile.rect.x1; ++x) merge_pixel(frame, pixel++, tile, source++, tile.counts_at(x, y));
   }
 }
 

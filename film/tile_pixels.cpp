@@ -9,8 +9,8 @@ namespace penumbra {
 namespace {
 
 constexpr std::string_view kMagic = "PNTR";
-constexpr uint32_t kVersion = 1;
-constexpr size_t kMixHeaderBytes = 4 * sizeof(int32_t) + 2 * sizeof(int64_t);
+constexpr uint32_t kVersion = 2, kVersionWithoutBlocks = 1;
+constexpr size_t kLeastMixBytes = 4 * sizeof(int32_t) + 2 * sizeof(int64_t);
 
 // By their bits, without a branch per value, so that the loop is vectorised: an exponent of all ones is an
 // infinity or a NaN.
@@ -42,10 +42,25 @@ std::string fault_of_header(const TileView& p) {
   return {};
 }
 
+std::string fault_of_blocks(const TileView& p) {
+  if (p.block_passes.size() != p.block_groups.size()) return "block counts of different lengths";
+  if (p.block_passes.empty()) return {};
+  if (p.passes == 0 || p.block_passes.size() != block_count(p.rect))
+    return fmt::format("counts of {} blocks for {} passes of {}", p.block_passes.size(), p.passes,
+                       block_count(p.rect));
+  for (size_t b = 0; b < p.block_passes.size(); ++b) {
+    const int32_t passes = p.block_passes[b], groups = p.block_groups[b];
+    if (passes < 0 || passes > p.passes || groups < 0 || groups > passes || (passes > 0 && groups == 0))
+      return fmt::format("block {}: {} groups of {} passes of {}", b, groups, passes, p.passes);
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string fault_of(const TileView& p) {
   if (std::string fault = fault_of_header(p); !fault.empty()) return fault;
+  if (std::string fault = fault_of_blocks(p); !fault.empty()) return fault;
   const bool absent = p.passes == 0 && p.mean.empty() && p.m2.empty() && p.cost.empty();
   const size_t pixels = absent ? 0 : static_cast<size_t>(p.rect.area());
   if (p.mean.size() != 3 * pixels || p.m2.size() != 3 * pixels || p.cost.size() != pixels)
@@ -67,7 +82,10 @@ std::string serialize(const TileResult& result) {
     for (const int32_t edge : {p.rect.x0, p.rect.y0, p.rect.x1, p.rect.y1}) out.put(edge);
     out.put(p.passes);
     out.put(p.groups);
+    out.put(static_cast<uint32_t>(p.passes > 0 ? p.block_passes.size() : 0));
     if (p.passes == 0) continue;
+    out.put(p.block_passes);
+    out.put(p.block_groups);
     out.put(p.mean);
     out.put(p.m2);
     out.put(p.cost);
@@ -87,20 +105,23 @@ absl::Status ReceivedTile::read() {
   uint32_t version = 0, mixes = 0;
   if (!in.expect(kMagic) || !in.get(version) || !in.get(mixes))
     return invalid_input("tile result: not a tile result");
-  if (version != kVersion) return invalid_input("tile result: version {}, not {}", version, kVersion);
-  if (mixes > in.left() / kMixHeaderBytes)
+  if (version != kVersion && version != kVersionWithoutBlocks)
+    return invalid_input("tile result: version {}, not {}", version, kVersion);
+  if (mixes > in.left() / kLeastMixBytes)
     return invalid_input("tile result: {} mixes in {} bytes", mixes, in.left());
   mixes_.resize(mixes);
   for (uint32_t m = 0; m < mixes; ++m) {
     TileView& p = mixes_[m];
+    uint32_t blocks = 0;
     if (!in.get(p.rect.x0) || !in.get(p.rect.y0) || !in.get(p.rect.x1) || !in.get(p.rect.y1) ||
-        !in.get(p.passes) || !in.get(p.groups))
+        !in.get(p.passes) || !in.get(p.groups) ||
+        (version != kVersionWithoutBlocks && !in.get(blocks)))
       return invalid_input("tile result: mix {}: truncated", m);
     if (const std::string fault = fault_of_header(p); !fault.empty())
       return invalid_input("tile result: mix {}: {}", m, fault);
     // An area below 2^62; its tripling cannot overflow, and view() bounds it by the bytes that are left.
     const uint64_t pixels = p.passes > 0 ? static_cast<uint64_t>(p.rect.area()) : 0;
-    if (!in.view(p.mean, 3 * pixels) || !in.view(p.m2, 3 * pixels) || !in.view(p.cost, pixels))
+    if (!in.view(p.block_passes, blocks) || !in.view(p.block_groups, blocks) || !in.view(p.mean, 3 * pixels) || !in.view(p.m2, 3 * pixels) || !in.view(p.cost, pixels))
       return invalid_input("tile result: mix {}: truncated", m);
     if (const std::string fault = fault_of(p); !fault.empty())
       return invalid_input("tile result: mix {}: {}", m, fault);

@@ -5,10 +5,11 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "proto/job.h"
+#include "proto/blocks.h"
 
 namespace penumbra {
 
@@ -17,8 +18,11 @@ namespace penumbra {
 /// or of full size, and are not sent.
 struct TilePixels {
   PixelRect rect;
-  int64_t passes = 0;       ///< weight: the same for every pixel
+  int64_t passes = 0;       ///< weight; with block counts the range's, which no block exceeds
   int64_t groups = 0;       ///< independent groups among them, 1 <= groups <= passes
+  /// Where blocks have sat out some of the passes (proto/blocks.h): each one's own counts, row by row, no groups
+  /// where there are no passes. Empty: every pixel has the counts above.
+  std::vector<int32_t> block_passes = {}, block_groups = {};
   std::vector<float> mean;  ///< 3 per pixel
   std::vector<float> m2;    ///< 3 per pixel: sum of weight * (group mean - mean)^2
   std::vector<float> cost;  ///< CPU µs per pixel, summed over the passes; outside bit-identity
@@ -33,9 +37,23 @@ struct TileResult {
 struct TileView {
   TileView() = default;
   TileView(const TilePixels& p)  // implicit: whoever takes a view takes the pixels themselves
-      : rect(p.rect), passes(p.passes), groups(p.groups), mean(p.mean), m2(p.m2), cost(p.cost) {}
+      : rect(p.rect),
+        passes(p.passes),
+        groups(p.groups),
+        block_passes(p.block_passes),
+        block_groups(p.block_groups),
+        mean(p.mean),
+        m2(p.m2),
+        cost(p.cost) {}
+  /// Passes and groups of a pixel of the rect.
+  std::pair<int64_t, int64_t> counts_at(int x, int y) const {
+    if (block_passes.empty()) return {passes, groups};
+    const size_t block = block_of(rect, x, y);
+    return {block_passes[block], block_groups[block]};
+  }
   PixelRect rect;
   int64_t passes = 0, groups = 0;
+  std::span<const int32_t> block_passes, block_groups;
   std::span<const float> mean, m2, cost;
 };
 
@@ -44,8 +62,8 @@ struct TileView {
 std::string fault_of(const TileView& pixels);
 
 /// Bytes of a result: `PNTR`, then little-endian: version u32, number of mixes u32; per mix x0 y0 x1 y1 i32,
-/// passes i64, groups i64, and with passes > 0 the float arrays mean, m2, cost, whose lengths follow from
-/// the rect. A result with a fault is a programmer's fault.
+/// passes i64, groups i64, blocks u32 (their number, or 0); with passes > 0 the i32 arrays block_passes and
+/// block_groups and the float arrays mean, m2, cost, whose lengths follow from the rect. A result with a fault is a programmer's fault.
 std::string serialize(const TileResult& result);
 
 /// A result as it came: its bytes, and where in them each mix lies. Nothing is copied: a server sees

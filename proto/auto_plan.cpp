@@ -1,5 +1,7 @@
 #include "proto/auto_plan.h"
 
+#include <algorithm>
+
 #include "proto/status.h"
 
 namespace penumbra {
@@ -14,6 +16,11 @@ const std::vector<Mix>& auto_candidates() {
     return mixes;
   }();
   return candidates;
+}
+
+bool is_bounded(const Mix& mix) {
+  return std::any_of(mix.strategies.begin(), mix.strategies.end(),
+                     [](const StrategyCount& s) { return s.kind == StrategyKind::kBsdf; });
 }
 
 std::vector<int> automatic_mixes(const std::vector<Mix>& mixes) {

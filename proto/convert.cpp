@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "proto/blocks.h"
 #include "proto/convert_check.h"
 
 namespace penumbra {
@@ -265,8 +266,12 @@ absl::StatusOr<TileTask> from_proto(const v1::TileTask& message) {
   RETURN_IF_ERROR(check_amount("pilot_seconds", message.pilot_seconds()));
   task.pilot_seconds = message.pilot_seconds();
   ASSIGN_OR_RETURN(task.chosen, list_from_proto<ChosenMix>("chosen", message.chosen()));
-  for (const ChosenMix& chosen : task.chosen)
+  for (const ChosenMix& chosen : task.chosen) {
     RETURN_IF_ERROR(check_range("chosen.mix", chosen.mix, 0, message.passes_size() - 1));
+    if (!shares_fit(task.tile, chosen.shares))
+      return invalid_input("chosen.shares: {} for {} blocks, or one is 0", chosen.shares.size(),
+                           block_count(task.tile));
+  }
   RETURN_IF_ERROR(check_range("pilot_blocks", message.pilot_blocks(), 0, kMostTile * kMostTile));
   task.pilot_blocks = message.pilot_blocks();
   for (const v1::PassRange& range : message.repilot()) {

@@ -25,6 +25,7 @@ v1::AutoPlan to_proto(const AutoPlan& plan) {
     v1::TilePlan* added = out.add_tiles();
     added->set_candidate(tile.candidate);
     added->set_passes(tile.passes);
+    added->set_shares(tile.shares.data(), tile.shares.size());
   }
   return out;
 }
@@ -42,7 +43,8 @@ absl::StatusOr<AutoPlan> from_proto(const v1::AutoPlan& message) {
     RETURN_IF_ERROR(
         check_range("auto_plans.tiles.candidate", tile.candidate(), 0, message.candidates_size() - 1));
     RETURN_IF_ERROR(check_range<int64_t>("auto_plans.tiles.passes", tile.passes(), 1, kMostPasses));
-    plan.tiles.push_back({tile.candidate(), tile.passes()});
+    plan.tiles.push_back(
+        {tile.candidate(), tile.passes(), {tile.shares().begin(), tile.shares().end()}});
   }
   return plan;
 }
@@ -86,6 +88,7 @@ v1::ChosenMix to_proto(const ChosenMix& chosen) {
   out.set_mix(chosen.mix);
   out.set_chosen(label(chosen.chosen));
   out.set_group(chosen.group);
+  out.set_shares(chosen.shares.data(), chosen.shares.size());
   return out;
 }
 
@@ -95,6 +98,7 @@ absl::StatusOr<ChosenMix> from_proto(const v1::ChosenMix& message) {
   ASSIGN_OR_RETURN(chosen.chosen, fixed_mix("chosen", message.chosen()));
   RETURN_IF_ERROR(check_range<int64_t>("chosen.group", message.group(), 1, kMostPasses));
   chosen.group = message.group();
+  chosen.shares.assign(message.shares().begin(), message.shares().end());
   return chosen;
 }
 

@@ -162,6 +162,12 @@ v1::MixCost to_proto(const MixCost& cost) {
   out.set_overhead_seconds(cost.overhead_seconds);
   out.set_repilot_passes(cost.repilot_passes);
   out.set_repilot_seconds(cost.repilot_seconds);
+  out.set_candidate(cost.candidate);
+  for (const BlockCost& block : cost.blocks) {
+    v1::BlockCost* added = out.add_blocks();
+    added->set_relative_deviation(block.relative_deviation);
+    added->set_cpu_seconds(block.cpu_seconds);
+  }
   return out;
 }
 
@@ -175,6 +181,7 @@ absl::StatusOr<MixCost> from_proto(const v1::MixCost& message) {
   RETURN_IF_ERROR(check_amount("costs.overhead_seconds", message.overhead_seconds()));
   RETURN_IF_ERROR(check_range<int64_t>("costs.repilot_passes", message.repilot_passes(), 0, kMostPasses));
   RETURN_IF_ERROR(check_amount("costs.repilot_seconds", message.repilot_seconds()));
+  RETURN_IF_ERROR(check_count("costs.blocks", message.blocks_size()));
   MixCost cost;
   ASSIGN_OR_RETURN(cost.calibration, from_proto(message.calibration()));
   cost.passes = message.passes();
@@ -189,6 +196,12 @@ absl::StatusOr<MixCost> from_proto(const v1::MixCost& message) {
   cost.overhead_seconds = message.overhead_seconds();
   cost.repilot_passes = message.repilot_passes();
   cost.repilot_seconds = message.repilot_seconds();
+  cost.candidate = message.candidate();
+  for (const v1::BlockCost& block : message.blocks()) {
+    RETURN_IF_ERROR(check_amount("costs.blocks.relative_deviation", block.relative_deviation()));
+    RETURN_IF_ERROR(check_amount("costs.blocks.cpu_seconds", block.cpu_seconds()));
+    cost.blocks.push_back({block.relative_deviation(), block.cpu_seconds()});
+  }
   return cost;
 }
 

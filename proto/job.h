@@ -63,7 +63,9 @@ struct Probe {
 /// What an `auto` mix does in one tile: one of its candidates, and how often.
 struct TilePlan {
   int candidate = 0;   ///< place in AutoPlan::candidates
-  int64_t passes = 0;  ///< >= 1
+  int64_t passes = 0;  ///< >= 1, of the block with the largest share
+  /// Of each block of pixels in the passes (proto/blocks.h), row by row, in 1/kWholeShare; empty: all alike.
+  std::vector<uint8_t> shares = {};
   bool operator==(const TilePlan&) const = default;
 };
 
@@ -126,6 +128,7 @@ struct ChosenMix {
   int mix = 0;        ///< the automatic mix's place in JobSpec::mixes
   Mix chosen;         ///< not automatic
   int64_t group = 1;  ///< passes per independently scrambled group, in place of the task's
+  std::vector<uint8_t> shares = {};  ///< TilePlan::shares
   bool operator==(const ChosenMix&) const = default;
 };
 
@@ -140,7 +143,8 @@ struct TileTask {
   /// kPilot: thread-CPU seconds after which no further pass of a mix is begun (0: all passes).
   double pilot_seconds = 0;
   /// kRun: one for each automatic mix, in their order. kPilot: all candidates of all automatic mixes,
-  /// measured on `pilot_blocks` small blocks of pixels (fewer where pilot_seconds per mix are up).
+  /// measured on `pilot_blocks` small blocks of pixels (fewer where pilot_seconds per mix are up). Then the best of
+  /// them makes the mix's `passes` of the whole tile, as far as as much time again allows.
   std::vector<ChosenMix> chosen;
   int pilot_blocks = 0;
   /// kRun: passes with the pilot's random numbers that are timed between the others and thrown away: what the
@@ -160,6 +164,15 @@ struct Calibration {
     seconds += other.seconds;
     return *this;
   }
+};
+
+/// What a pilot has found in a block of pixels (proto/blocks.h): sums over its pixels, of one pass.
+struct BlockCost {
+  /// s / √(mean² + 1e-2), s² the variance of a pixel summed over channels. Deviations, because few passes tell their
+  /// mean far better than that of variances, which a few rare samples may hold most of.
+  float relative_deviation = 0;
+  float cpu_seconds = 0;
+  bool operator==(const BlockCost&) const = default;
 };
 
 /// What one mix of one tile task cost. Never part of the image's bits.
@@ -184,6 +197,10 @@ struct MixCost {
   // Of a run task's passes that were thrown away (TileTask::repilot); in no other figure.
   int64_t repilot_passes = 0;
   double repilot_seconds = 0;
+  /// Of an automatic mix in a pilot: which of the candidates made whole passes of the tile, and, if there were at
+  /// least two, what they found in each block.
+  int candidate = 0;
+  std::vector<BlockCost> blocks = {};
   bool operator==(const MixCost&) const = default;
 };
 

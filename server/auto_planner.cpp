@@ -6,6 +6,8 @@
 #include <numeric>
 
 #include "proto/status.h"
+#include "server/auto_blocks.h"
+#include "server/auto_measurements.h"
 
 namespace penumbra {
 namespace {
@@ -28,78 +30,6 @@ constexpr double kMostRatio = 256;
 // No tile gets fewer than this share of the mean passes, whatever the pilot has (not) seen there.
 constexpr double kLeastShare = 0.4;
 constexpr double kMostPasses = 1e12;  // far beyond any run; keeps conversions defined
-
-/// What the pilot says of the candidates in each tile, per pixel. Row per tile, column per candidate that was
-/// measured.
-using Table = std::vector<std::vector<double>>;
-
-struct Measurements {
-  std::vector<int> candidates;  ///< places in auto_candidates()
-  Table variance;               ///< mean of s² / (mean² + ε), summed over channels
-  Table worth;     ///< how many pixels that mean is worth, (Σx)² / Σx²: one, if one outshines the rest
-  Table measured;  ///< how many pixels were measured
-  Table cost;      ///< per pass: seconds, or units of work
-  double pilot_seconds = 0;
-};
-
-/// How much more a whole pass costs than blocks say; 1 where no tile has made one.
-double whole_pass_factor(const JobSpec& spec, const std::vector<PixelRect>& tiles,
-                         const std::vector<std::vector<MixCost>>& pilot, size_t mix, size_t first) {
-  double whole = 0, blocks = 0;
-  for (size_t t = 0; t < pilot.size(); ++t) {
-    const MixCost &pass = pilot[t][mix], &block = pilot[t][first];
-    if (pass.passes < 1 || block.pixels < 1) continue;
-    whole += pass.cpu_seconds / static_cast<double>(pass.passes);
-    blocks += block.cpu_seconds / static_cast<double>(block.pixels * block.passes) *
-              static_cast<double>(tiles[t].area());
-  }
-  return std::holds_alternative<CpuSecondsBudget>(spec.budget) && whole > 0 && blocks > 0 ? whole / blocks
-                                                                                          : 1;
-}
-
-absl::StatusOr<Measurements> measurements(const JobSpec& spec, const std::vector<PixelRect>& tiles,
-                                          const std::vector<std::vector<MixCost>>& pilot, size_t number) {
-  const size_t candidates = auto_candidates().size();
-  const size_t first = spec.mixes.size() + number * candidates;
-  const auto mix = static_cast<size_t>(automatic_mixes(spec.mixes)[number]);
-  const bool counted = std::holds_alternative<SppBudget>(spec.budget);
-  Measurements out;
-  for (const std::vector<MixCost>& tile : pilot) {
-    if (tile.size() < first + candidates)
-      return make_status(absl::StatusCode::kInternal, "a pilot task of `auto` has measured {} mixes of {}",
-                         tile.size(), first + candidates);
-    out.pilot_seconds += tile[mix].cpu_seconds;
-    std::vector<int> measured;
-    std::vector<double> variance, worth, counts, cost;
-    for (size_t k = 0; k < candidates; ++k) {
-      const MixCost& c = tile[first + k];
-      out.pilot_seconds += c.cpu_seconds + c.overhead_seconds;
-      if (c.pixels < 1 || c.passes < 2) continue;
-      const double pixels = static_cast<double>(c.pixels);
-      measured.push_back(static_cast<int>(k));
-      variance.push_back(c.relative_variance / pixels);
-      cost.push_back((counted ? c.work : c.cpu_seconds) / (pixels * static_cast<double>(c.passes)));
-      counts.push_back(pixels);
-      const double sum = c.relative_variance, squares = c.relative_variance_squares;
-      worth.push_back(squares > 0 ? std::min(pixels, sum * sum / squares) : pixels);
-    }
-    if (measured.empty() || (!out.candidates.empty() && measured != out.candidates))
-      return make_status(absl::StatusCode::kInternal,
-                         "a pilot task of `auto` has measured nothing to compare");
-    out.candidates = std::move(measured);
-    out.variance.push_back(std::move(variance));
-    out.worth.push_back(std::move(worth));
-    out.measured.push_back(std::move(counts));
-    out.cost.push_back(std::move(cost));
-  }
-  const double factor = whole_pass_factor(spec, tiles, pilot, mix, first);
-  for (std::vector<double>& tile : out.cost)
-    for (double& cost : tile) cost *= factor;
-  for (const std::vector<double>& tile : out.cost)
-    if (!(*std::min_element(tile.begin(), tile.end()) > 0))
-      return make_status(absl::StatusCode::kInternal, "the pilot of `auto` has taken no time");
-  return out;
-}
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<ptrdiff_t>(values.size() / 2);
@@ -211,23 +141,38 @@ Table smoothed(const Table& figures, const Table& pixels, const std::vector<doub
   return out;
 }
 
-/// One tile's best candidate, and what a pass of it costs and leaves: of the whole tile.
+/// One tile's best candidate, and what a pass of it costs and leaves: of the whole tile, with its blocks' shares.
 struct Choice {
   int candidate;
   double variance, cost;
+  std::vector<uint8_t> shares;
   /// Passes are in proportion to this; 0 where nothing varies.
   double weight() const { return std::sqrt(variance / cost); }
 };
 
 std::vector<double> image_ratios(const std::vector<int>& candidates) {
   std::vector<double> out;
-  for (const int k : candidates) {
-    const std::vector<StrategyCount>& strategies = auto_candidates()[static_cast<size_t>(k)].strategies;
-    const bool bounded = std::any_of(strategies.begin(), strategies.end(),
-                                     [](const StrategyCount& s) { return s.kind == StrategyKind::kBsdf; });
-    out.push_back(bounded ? 1 : kUnboundedRatio);
-  }
+  for (const int k : candidates)
+    out.push_back(is_bounded(auto_candidates()[static_cast<size_t>(k)]) ? 1 : kUnboundedRatio);
   return out;
+}
+
+/// How much varies in each tile, from two views of it: what the candidates found in few pixels (`few`, per tile), and
+/// the deviations of whole passes, where there were any. Both are noisy, in ways of their own: their geometric mean,
+/// in the first one's units.
+std::vector<double> tile_variances(const std::vector<PixelRect>& tiles, const Measurements& m,
+                                   std::vector<double> few) {
+  std::vector<double> whole;
+  double sum_few = 0, sum_whole = 0;
+  for (size_t t = 0; t < tiles.size(); ++t) {
+    whole.push_back(squared_deviations(tiles[t], m.blocks[t]));
+    if (!(whole[t] > 0)) continue;
+    sum_few += few[t];
+    sum_whole += whole[t];
+  }
+  for (size_t t = 0; t < tiles.size(); ++t)
+    if (whole[t] > 0 && sum_few > 0) few[t] = std::sqrt(few[t] * whole[t] * sum_few / sum_whole);
+  return few;
 }
 
 std::vector<Choice> choices(const std::vector<PixelRect>& tiles, const Measurements& m) {
@@ -239,14 +184,24 @@ std::vector<Choice> choices(const std::vector<PixelRect>& tiles, const Measureme
   const Table compared = comparable(m.variance, m.worth, image, image_ratios(m.candidates), columns);
   const Table variance = smoothed(m.variance, m.worth, image, columns);
   const Table cost = smoothed(m.cost, m.measured, image_cost, columns);
-  std::vector<Choice> out;
+  std::vector<size_t> chosen;
+  std::vector<double> found;
   for (size_t t = 0; t < areas.size(); ++t) {
     size_t best = 0;
     for (size_t k = 1; k < m.candidates.size(); ++k) {
       const double a = compared[t][k] * cost[t][k], b = compared[t][best] * cost[t][best];
       if (a < b || (a == b && cost[t][k] < cost[t][best])) best = k;
     }
-    out.push_back({m.candidates[best], areas[t] * variance[t][best], areas[t] * cost[t][best]});
+    chosen.push_back(best);
+    found.push_back(areas[t] * variance[t][best]);
+  }
+  found = tile_variances(tiles, m, std::move(found));
+  std::vector<Choice> out;
+  for (size_t t = 0; t < areas.size(); ++t) {
+    const double whole_cost = areas[t] * cost[t][chosen[t]];
+    SharedOut shared = shared_out(tiles[t], m.blocks[t]);
+    out.push_back({m.candidates[chosen[t]], found[t] * shared.error, whole_cost * shared.cost,
+                   std::move(shared.shares)});
   }
   return out;
 }
@@ -350,7 +305,10 @@ absl::StatusOr<AutoPlan> plan_auto(const JobSpec& spec, const std::vector<PixelR
   const std::vector<Choice> chosen = choices(tiles, m);
   const std::vector<int64_t> passes = passes_of(spec, chosen, m.pilot_seconds, spending);
   AutoPlan plan{automatic_mixes(spec.mixes)[number], auto_candidates(), {}};
-  for (size_t t = 0; t < tiles.size(); ++t) plan.tiles.push_back({chosen[t].candidate, passes[t]});
+  const bool counted = std::holds_alternative<SppBudget>(spec.budget);  // so many in every pixel
+  for (size_t t = 0; t < tiles.size(); ++t)
+    plan.tiles.push_back(
+        {chosen[t].candidate, passes[t], counted ? std::vector<uint8_t>{} : chosen[t].shares});
   return plan;
 }
 

@@ -4,7 +4,8 @@
 // The error of the image is Σ_t V_t / N_t, with V_t the sum over a tile's pixels and channels of
 // s² / (mean² + ε) of one pass, and N_t its passes; its cost is Σ_t C_t N_t. Neyman's allocation,
 // N_t ∝ √(V_t / C_t), has the least error at any cost: (Σ_t √(V_t C_t))² / cost. So a tile takes the
-// candidate with the least V C, and then the passes that follow.
+// candidate with the least V C, and then the passes that follow. Within a tile the same goes for its blocks
+// (server/auto_blocks.h).
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -12,10 +13,6 @@
 #include "proto/job.h"
 
 namespace penumbra {
-
-/// A pilot's blocks are small and soon warm in caches; a whole pass of the first candidate in every so many
-/// tiles tells what that makes of costs.
-inline constexpr uint64_t kCalibrationTiles = 8;
 
 /// Blocks of pixels that the pilot of a tile should measure, at most: what the budget allows.
 int pilot_blocks(const JobSpec& spec, const PixelRect& tile);
@@ -28,7 +25,7 @@ struct AutoSpending {
 };
 
 /// The plan of the job's automatic mix number `number` among them. `pilot[tile]` are the costs of the pilot
-/// tasks: one per mix of the job (of an automatic mix: a whole pass of its first candidate in some tiles),
+/// tasks: one per mix of the job (of an automatic mix: whole passes of one of its candidates, where there were any),
 /// then one per candidate of each automatic mix. CPU seconds S: the passes that, by the pilot's costs, take S
 /// less what the pilot and its repetitions take; at least one each, and at least what is rendered already.
 /// Target error E: the passes that bring Σ_t V_t / N_t down to E times pixels and channels; at least two
@@ -39,7 +36,7 @@ absl::StatusOr<AutoPlan> plan_auto(const JobSpec& spec, const std::vector<PixelR
                                    const AutoSpending& spending = {});
 
 /// Seconds of the pilot (with a budget of passes: units of work) for a pass of what each tile does in that
-/// plan.
+/// plan, with its blocks' shares.
 absl::StatusOr<std::vector<double>> auto_pass_costs(const JobSpec& spec, const std::vector<PixelRect>& tiles,
                                                     const std::vector<std::vector<MixCost>>& pilot,
                                                     size_t number);

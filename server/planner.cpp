@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "proto/auto_plan.h"
+#include "proto/blocks.h"
 #include "proto/status.h"
 #include "server/auto_planner.h"
 #include "server/replanner.h"
@@ -19,6 +20,9 @@ constexpr int64_t kMostPilotPasses = 256;
 // Passes of a target-error pilot: the variance of one pass is then known to 1/√(2·(8−1)) per pixel and
 // far better in the mean over pixels.
 constexpr int64_t kVariancePilotPasses = 8;
+// Whole passes of a tile by one of `auto`'s candidates, where there is time for them: together with the other
+// pixels of its block each tells enough of what varies there.
+constexpr int64_t kLevelPasses = 4;
 // Groups of passes in a run. Fewer and larger groups stratify better; the variance needs several.
 constexpr int64_t kLeastGroups = 4;
 // Tasks as long as these are cheap to administer and short enough to keep all cores busy to the end.
@@ -74,6 +78,15 @@ int64_t choose_group(const JobSpec& spec, int64_t least, double seconds_per_pass
   return group;
 }
 
+/// For a tile of an automatic mix: its blocks have few passes where their share is small, and the variance of
+/// each needs two groups at least.
+int64_t choose_group(const JobSpec& spec, const TilePlan& tile, double seconds_per_pass) {
+  if (tile.shares.empty()) return choose_group(spec, tile.passes, seconds_per_pass);
+  const int smallest = *std::min_element(tile.shares.begin(), tile.shares.end());
+  const int64_t least = tile.passes * smallest / kWholeShare;
+  return choose_group(spec, std::min(tile.passes, least * kLeastGroups / 2), seconds_per_pass);
+}
+
 struct Share {
   double share;
   bool checkpoint;
@@ -117,12 +130,13 @@ std::vector<int64_t> common_passes(const JobSpec& spec, const std::vector<int64_
   return common.empty() ? passes : common;
 }
 
-/// Mean over the pixels of one figure per tile, rounded.
-int64_t mean_over_pixels(const JobSpec& spec, const std::vector<PixelRect>& tiles,
+/// Mean over the pixels of tiles' passes, as their blocks share in them, rounded.
+int64_t mean_over_pixels(const JobSpec& spec, const std::vector<PixelRect>& tiles, const AutoPlan& plan,
                          const std::vector<int64_t>& passes) {
   double sum = 0;
   for (size_t t = 0; t < tiles.size(); ++t)
-    sum += static_cast<double>(passes[t]) * static_cast<double>(tiles[t].area());
+    sum += static_cast<double>(passes[t]) * mean_share(tiles[t], plan.tiles[t].shares) *
+           static_cast<double>(tiles[t].area());
   return std::llround(sum / static_cast<double>(spec.crop.area()));
 }
 
@@ -180,7 +194,7 @@ absl::StatusOr<int64_t> passes_for_seconds(double budget, const std::vector<std:
 int64_t mean_passes(const JobSpec& spec, const std::vector<PixelRect>& tiles, const AutoPlan& plan) {
   std::vector<int64_t> passes;
   for (const TilePlan& tile : plan.tiles) passes.push_back(tile.passes);
-  return std::max<int64_t>(1, mean_over_pixels(spec, tiles, passes));
+  return std::max<int64_t>(1, mean_over_pixels(spec, tiles, plan, passes));
 }
 
 TileTask pilot_task(const JobSpec& spec, const std::vector<PixelRect>& tiles, uint64_t index) {
@@ -198,11 +212,8 @@ TileTask pilot_task(const JobSpec& spec, const std::vector<PixelRect>& tiles, ui
                          static_cast<double>(spec.crop.area());
   }
   const bool measured = !std::holds_alternative<SppBudget>(spec.budget);
-  for (const Mix& mix : spec.mixes) {
-    const bool whole =
-        std::holds_alternative<CpuSecondsBudget>(spec.budget) && index % kCalibrationTiles == 0;
-    task.passes.push_back({0, mix.automatic ? (whole ? 1 : 0) : (measured ? passes : 0)});
-  }
+  for (const Mix& mix : spec.mixes)
+    task.passes.push_back({0, measured ? (mix.automatic ? kLevelPasses : passes) : 0});
   for (const int m : automatic_mixes(spec.mixes))
     for (const Mix& candidate : auto_candidates()) task.chosen.push_back({m, candidate, 1});
   if (!task.chosen.empty()) task.pilot_blocks = pilot_blocks(spec, task.tile);
@@ -242,9 +253,14 @@ absl::StatusOr<PlannedPasses> planned_passes(const JobSpec& spec,
 
 absl::Status check_stages(const JobSpec& spec, const PlannedPasses& planned) {
   const std::vector<PixelRect> tiles = tiles_of(spec);
-  for (const AutoPlan& plan : planned.autos)
+  for (const AutoPlan& plan : planned.autos) {
     if (plan.tiles.size() != tiles.size())
       return invalid_input("auto_plans: {} tiles, where the job has {}", plan.tiles.size(), tiles.size());
+    for (size_t t = 0; t < tiles.size(); ++t)
+      if (!shares_fit(tiles[t], plan.tiles[t].shares))
+        return invalid_input("auto_plans: tile {}: {} shares for {} blocks, or one is 0", t,
+                             plan.tiles[t].shares.size(), block_count(tiles[t]));
+  }
   for (const EarlierPlan& plan : planned.earlier)
     for (const std::vector<int64_t>& passes : plan.autos)
       if (passes.size() != tiles.size())
@@ -291,11 +307,14 @@ static void add_boundaries(const JobSpec& spec, Plan& plan, const std::vector<Sh
     PassBoundary boundary{{}, checkpoint, share};
     std::vector<std::vector<int64_t>> now = auto_passes_at(share, plan);
     size_t automatic = 0;
-    for (size_t m = 0; m < spec.mixes.size(); ++m)
-      boundary.passes.push_back(
-          spec.mixes[m].automatic
-              ? mean_over_pixels(spec, tiles, now[automatic++])
-              : std::max(before[m], passes_at(share, stages_of(plan.planned, m), plan.group)));
+    for (size_t m = 0; m < spec.mixes.size(); ++m) {
+      if (spec.mixes[m].automatic) {
+        boundary.passes.push_back(mean_over_pixels(spec, tiles, plan.planned.autos[automatic], now[automatic]));
+        ++automatic;
+      } else {
+        boundary.passes.push_back(std::max(before[m], passes_at(share, stages_of(plan.planned, m), plan.group)));
+      }
+    }
     if (now == before_autos && boundary.passes == before) {
       // Too few passes for this cut: the boundary that is already there serves the checkpoint.
       if (checkpoint && !plan.boundaries.empty()) plan.boundaries.back().checkpoint = true;
@@ -326,7 +345,7 @@ Plan make_plan(const JobSpec& spec, const PlannedPasses& planned) {
   for (const AutoPlan& a : first.autos) {
     plan.groups.emplace_back();
     for (const TilePlan& tile : a.tiles)
-      plan.groups.back().push_back(choose_group(spec, tile.passes, tile_seconds / most));
+      plan.groups.back().push_back(choose_group(spec, tile, tile_seconds / most));
   }
   const double task_seconds = std::max(
       std::clamp(seconds / kTasksPerRun, kLeastTaskSeconds, kMostTaskSeconds), tile_seconds / kMostRanges);
@@ -372,7 +391,8 @@ TileTask run_task(const JobSpec& spec, const Plan& plan, const std::vector<Pixel
   for (size_t a = 0; a < plan.planned.autos.size(); ++a) {
     const AutoPlan& planned = plan.planned.autos[a];
     task.chosen.push_back(
-        {planned.mix, planned.candidates[planned.tiles[tile].candidate], plan.groups[a][tile]});
+        {planned.mix, planned.candidates[planned.tiles[tile].candidate], plan.groups[a][tile],
+         planned.tiles[tile].shares});
   }
   task.repilot = repilot_of(spec, plan, range, tile);
   task.shuffle = scramble(spec.seed, first_id + index);

@@ -60,9 +60,6 @@ absl::StatusOr<JobSpec> checked_spec(const BlobFolder& blobs, const v1::SubmitRe
   const size_t tiles = tiles_of(spec).size();
   if (tiles > kMostTiles)
     return invalid_input("tile: {} pixels make more than {} tiles of this picture", spec.tile, kMostTiles);
-  for (const AutoPlan& plan : spec.auto_plans)
-    if (plan.tiles.size() != tiles)
-      return invalid_input("auto_plans: {} tiles, where the job has {}", plan.tiles.size(), tiles);
   if (!spec.plan.empty())
     RETURN_IF_ERROR(check_stages(spec, {spec.plan, spec.auto_plans, spec.earlier_plans}));
   RETURN_IF_ERROR(check_bundle(blobs, spec));

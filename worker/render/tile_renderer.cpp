@@ -1,104 +1,20 @@
 // One tile task: all its mixes on this thread, in slices of passes, interleaved at random, so that the
 // machine's drift meets every mix alike (design §7).
-#include <x86intrin.h>
-
 #include <algorithm>
-#include <cmath>
+#include <memory>
 #include <set>
 
 #include "proto/status.h"
+#include "worker/render/auto_pilot.h"
 #include "worker/render/calibration.h"
-#include "worker/render/candidate_pilot.h"
 #include "worker/render/integrand.h"
-#include "worker/render/pixel_sampler.h"
-#include "worker/render/thread_clock.h"
-#include "worker/render/tile_accumulator.h"
+#include "worker/render/mix_run.h"
 
 namespace penumbra {
 namespace {
 
 /// Passes of one mix between two looks at another: short enough to interleave, long enough to warm up.
 constexpr int64_t kSlice = 4;
-
-/// What is rendered at a mix's place in this tile.
-struct Rendered {
-  const Mix& mix;
-  int64_t group;
-};
-Rendered rendered(const JobSpec& job, const TileTask& task, size_t index) {
-  if (job.mixes[index].automatic)
-    for (const ChosenMix& chosen : task.chosen)
-      if (chosen.mix == int(index)) return {chosen.chosen, chosen.group};
-  return {job.mixes[index], task.group};
-}
-
-/// The passes of one mix over one tile.
-class MixRun {
- public:
-  MixRun(const Rendering& rendering, const TileTask& task, size_t index)
-      : MixRun(rendering, task, index, rendered(rendering.job, task, index)) {}
-
-  int64_t left() const { return end_ - next_; }
-  void stop() { end_ = next_; }
-  int64_t next() const { return next_; }
-  int64_t passes() const { return cost_.passes; }
-  double cpu_seconds() const { return cost_.cpu_seconds; }
-  Calibration& calibration() { return cost_.calibration; }
-
-  void pass() {
-    const double start = thread_cpu_seconds();
-    size_t pixel = 0;
-    for (int y = task_.tile.y0; y < task_.tile.y1; ++y)
-      for (int x = task_.tile.x0; x < task_.tile.x1; ++x) sample(x, y, pixel++);
-    const double seconds = thread_cpu_seconds() - start;
-    accumulator_.end_pass(next_++, seconds);
-    cost_.cpu_seconds += seconds;
-    ++cost_.passes;
-  }
-
-  /// Forgets a pilot's first pass: it paid for cold caches and first touches of memory.
-  void forget() {
-    accumulator_ = TileAccumulator(task_.tile, task_.group);
-    sampler_.counters() = {};
-    cost_ = {};
-  }
-
-  TilePixels pixels() {
-    accumulator_.finish();
-    return accumulator_.pixels();
-  }
-  MixCost cost() {
-    accumulator_.finish();
-    cost_.rays = sampler_.counters().rays;
-    cost_.line_queries = sampler_.counters().line_queries;
-    cost_.relative_variance = accumulator_.relative_variance();
-    return cost_;
-  }
-
- private:
-  MixRun(const Rendering& rendering, const TileTask& task, size_t index, const Rendered& what)
-      : task_(task),
-        sampler_(rendering, what.mix, index, what.group),
-        accumulator_(task.tile, what.group),
-        next_(task.passes[index].begin),
-        end_(task.passes[index].end) {}
-
-  void sample(int x, int y, size_t pixel) {
-    const uint64_t start = __rdtsc();
-    Rgb value = sampler_.sample(x, y, next_);
-    if (!is_finite(value)) {
-      ++cost_.non_finite;
-      value = Rgb(0);
-    }
-    accumulator_.add(pixel, value, __rdtsc() - start);
-  }
-
-  const TileTask& task_;
-  PixelSampler sampler_;
-  MixCost cost_;
-  TileAccumulator accumulator_;
-  int64_t next_, end_;
-};
 
 /// A small generator for the interleaving, which is no part of the image (SplitMix64, Steele et al. 2014).
 uint64_t next_random(uint64_t& state) {
@@ -140,7 +56,7 @@ class Repilot {
   /// Whatever has its place before this pass of this mix.
   void before(size_t mix, int64_t pass) {
     if (runs_.empty()) return;
-    for (size_t n = places_[mix].count(pass); n > 0; --n) runs_[mix]->pass();
+    for (size_t n = places_[mix].count(pass); n > 0; --n) runs_[mix]->pass_like(pass);
   }
 
   void report(std::vector<MixCost>& costs) const {
@@ -157,25 +73,13 @@ class Repilot {
   std::vector<std::multiset<int64_t>> places_;  ///< per mix: its own passes that one of the pilot's precedes
 };
 
-/// Costs of all candidates, in the task's order; those of one automatic mix stand together. False: cancelled.
-bool run_candidates(const Rendering& rendering, const TileTask& task, const std::atomic<bool>& cancel,
-                    std::vector<MixCost>& costs) {
-  for (size_t begin = 0; begin < task.chosen.size();) {
-    std::vector<ChosenMix> candidates;
-    for (; begin < task.chosen.size(); ++begin) {
-      if (!candidates.empty() && candidates[0].mix != task.chosen[begin].mix) break;
-      candidates.push_back(task.chosen[begin]);
-    }
-    const std::vector<MixCost> measured = measure_candidates(rendering, task, candidates, cancel);
-    if (measured.empty()) return false;
-    costs.insert(costs.end(), measured.begin(), measured.end());
-  }
-  return true;
-}
-
-/// A pilot measures until its time is up, at least one pass; the first is thrown away if there is time.
-bool run_pilot(std::vector<std::unique_ptr<MixRun>>& runs, double seconds, const std::atomic<bool>& cancel) {
-  for (auto& run : runs) {
+/// A pilot measures until its time is up, at least one pass; the first is thrown away if there is time. Automatic
+/// mixes have a pilot of their own.
+bool run_pilot(std::vector<std::unique_ptr<MixRun>>& runs, const JobSpec& job, double seconds,
+               const std::atomic<bool>& cancel) {
+  for (size_t m = 0; m < runs.size(); ++m) {
+    if (job.mixes[m].automatic) continue;
+    auto& run = runs[m];
     for (int done = 0; run->left() > 0; ++done) {
       if (cancel.load(std::memory_order_relaxed)) return false;
       run->pass();
@@ -206,7 +110,7 @@ TaskOutcome render_tile(const Scene& scene, const JobSpec& job, const TileTask& 
   for (size_t m = 0; m < job.mixes.size(); ++m) runs.push_back(std::make_unique<MixRun>(rendering, task, m));
 
   if (task.kind == TaskKind::kPilot) {
-    outcome.cancelled = !run_pilot(runs, task.pilot_seconds, cancel);
+    outcome.cancelled = !run_pilot(runs, job, task.pilot_seconds, cancel);
   } else {
     CalibrationClock calibration;
     Repilot repilot(rendering, task);
@@ -229,7 +133,7 @@ TaskOutcome render_tile(const Scene& scene, const JobSpec& job, const TileTask& 
     return outcome;
   }
   for (auto& run : runs) outcome.costs.push_back(run->cost());
-  if (!outcome.cancelled) outcome.cancelled = !run_candidates(rendering, task, cancel, outcome.costs);
+  if (!outcome.cancelled) outcome.cancelled = !run_auto_pilot(rendering, task, cancel, outcome.costs);
   return outcome;
 }
 

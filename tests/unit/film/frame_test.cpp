@@ -45,6 +45,21 @@ TEST(Frame, TilesLandAtTheirPixels) {
     }
 }
 
+TEST(Frame, BlocksCountForThemselves) {
+  Frame frame(16, 1, {0, 0, 16, 1});
+  TilePixels first = tile({0, 0, 16, 1}, 8, 2, 1), second = tile({0, 0, 16, 1}, 4, 1, 4);
+  second.block_passes = {4, 0};
+  second.block_groups = {1, 0};
+  merge(frame, first);
+  merge(frame, second);
+  const FilmImage image = resolve(frame);
+  EXPECT_EQ(image.samples[0], 12);
+  EXPECT_EQ(image.samples[15], 8);
+  EXPECT_FLOAT_EQ(image.rgb[0], 2);            // (8 · 1 + 4 · 4) / 12
+  EXPECT_FLOAT_EQ(image.rgb[45], 1 + 10 * 15);  // as before
+  EXPECT_FLOAT_EQ(image.variance[45], 1.f / 8);
+}
+
 TEST(Frame, PassesAccumulateAsMoments) {
   Frame frame(2, 1, {0, 0, 2, 1});
   merge(frame, tile({0, 0, 2, 1}, 4, 2, 1));

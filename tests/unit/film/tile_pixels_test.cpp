@@ -48,6 +48,54 @@ TEST(TileResult, RoundTrips) {
   EXPECT_TRUE(back->mixes()[1].mean.empty());
 }
 
+TilePixels blocks_tile() {
+  TilePixels p = sample_tile();
+  p.rect = {64, 128, 74, 129};  // two blocks of 8 and 2 pixels
+  p.mean.resize(30);
+  p.m2.resize(30);
+  p.cost.resize(10);
+  p.block_passes = {8, 4};
+  p.block_groups = {2, 1};
+  return p;
+}
+
+TEST(TileResult, CountsOfBlocksComeBack) {
+  const auto back = ReceivedTile::parse(serialize({{blocks_tile(), sample_tile()}}));
+  ASSERT_TRUE(back.ok()) << message_of(back.status());
+  const TileView& p = back->mixes()[0];
+  EXPECT_EQ(p.counts_at(71, 128), (std::pair<int64_t, int64_t>{8, 2}));
+  EXPECT_EQ(p.counts_at(72, 128), (std::pair<int64_t, int64_t>{4, 1}));
+  EXPECT_EQ(back->mixes()[1].counts_at(66, 129), (std::pair<int64_t, int64_t>{8, 2}));
+  EXPECT_EQ(copy(back->mixes()[1].mean), sample_tile().mean);
+}
+
+TEST(TileResult, CountsOfBlocksMustFit) {
+  const auto fault = [](auto break_it) {
+    TilePixels p = blocks_tile();
+    break_it(p);
+    return fault_of(p);
+  };
+  EXPECT_TRUE(fault([](TilePixels&) {}).empty());
+  EXPECT_FALSE(fault([](TilePixels& p) { p.block_passes[0] = 9; }).empty()) << "more than the range has";
+  EXPECT_FALSE(fault([](TilePixels& p) { p.block_passes[0] = -1; }).empty());
+  EXPECT_FALSE(fault([](TilePixels& p) { p.block_groups[1] = 5; }).empty()) << "more groups than passes";
+  EXPECT_FALSE(fault([](TilePixels& p) { p.block_groups[1] = 0; }).empty()) << "passes without a group";
+  EXPECT_FALSE(fault([](TilePixels& p) { p.block_passes.pop_back(); }).empty());
+  EXPECT_FALSE(fault([](TilePixels& p) {
+                 p.block_passes.pop_back();
+                 p.block_groups.pop_back();
+               }).empty());
+}
+
+TEST(TileResult, ResultsFromBeforeThereWereBlocksAreRead) {
+  std::string bytes = serialize({{sample_tile()}});
+  bytes[4] = 1;             // the version
+  bytes.erase(12 + 32, 4);  // the number of blocks, behind rect, passes and groups
+  const auto back = ReceivedTile::parse(bytes);
+  ASSERT_TRUE(back.ok()) << message_of(back.status());
+  EXPECT_EQ(copy(back->mixes()[0].mean), sample_tile().mean);
+}
+
 TEST(TileResult, AMixWithoutPassesIsNotSent) {
   TilePixels zeros = sample_tile();
   zeros.passes = zeros.groups = 0;

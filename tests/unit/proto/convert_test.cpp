@@ -61,7 +61,7 @@ TEST(Convert, PlansOfAutoComeBack) {
   JobSpec spec = full_spec();
   spec.mixes.push_back(*parse_mix("auto"));
   spec.plan = {7, 8, 9, 10};
-  spec.auto_plans = {{3, {*parse_mix("sa:4"), *parse_mix("bsdf:1+sa:1")}, {{1, 5}, {0, 15}}}};
+  spec.auto_plans = {{3, {*parse_mix("sa:4"), *parse_mix("bsdf:1+sa:1")}, {{1, 5, {1, 255}}, {0, 15}}}};
   expect_round_trip(spec);
   const std::vector<std::pair<std::string, std::function<void(v1::AutoPlan&)>>> faults = {
       {"auto_plans", [](v1::AutoPlan& p) { p.set_mix(2); }},

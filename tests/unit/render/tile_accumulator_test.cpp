@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace penumbra {
 namespace {
 
@@ -41,6 +43,40 @@ TEST(TileAccumulator, GroupsAreCountedFromTheRunsFirstPass) {
   }
   tile.finish();
   EXPECT_EQ(tile.pixels().groups, 2);
+}
+
+TEST(TileAccumulator, BlocksThatSitOutHaveCountsOfTheirOwn) {
+  TileAccumulator tile({0, 0, 9, 1}, 2);  // blocks of 8 pixels and of 1
+  for (int pass = 0; pass < 4; ++pass) {
+    for (size_t pixel = 0; pixel < 9; ++pixel)
+      if (pixel < 8 || pass < 2) tile.add(pixel, Rgb(pixel < 8 ? 1.f : float(pass)), 10);
+    tile.end_pass(pass, pass < 2 ? 9e-6 : 8e-6);
+  }
+  tile.finish();
+  const TilePixels p = tile.pixels();
+  EXPECT_EQ(p.passes, 4);
+  EXPECT_EQ(p.groups, 2);
+  EXPECT_EQ(p.block_passes, (std::vector<int32_t>{4, 2}));
+  EXPECT_EQ(p.block_groups, (std::vector<int32_t>{2, 1}));
+  EXPECT_FLOAT_EQ(p.mean[24], 0.5);
+  EXPECT_FLOAT_EQ(p.cost[8], 2) << "charged for passes that it sat out";
+  EXPECT_FLOAT_EQ(p.cost[0], 4);
+  EXPECT_TRUE(fault_of(p).empty());
+}
+
+TEST(TileAccumulator, BlocksAddUp) {
+  TileAccumulator tile({0, 0, 16, 1}, 1);
+  for (int pass = 0; pass < 3; ++pass) {
+    for (size_t pixel = 0; pixel < 16; ++pixel)
+      tile.add(pixel, Rgb(pixel < 8 ? 1.f : float(pass)), pixel < 8 ? 10 : 30);
+    tile.end_pass(pass, 4e-6);
+  }
+  const std::vector<BlockCost> blocks = tile.blocks();
+  ASSERT_EQ(blocks.size(), 2u);
+  EXPECT_EQ(blocks[0].relative_deviation, 0);
+  EXPECT_NEAR(blocks[1].relative_deviation, 8 * std::sqrt(3 / 1.01), 1e-3);  // s² = 1 about the mean 1, three times
+  EXPECT_FLOAT_EQ(blocks[0].cpu_seconds, 1e-6f);
+  EXPECT_FLOAT_EQ(blocks[1].cpu_seconds, 3e-6f);
 }
 
 TEST(TileAccumulator, RelativeVarianceNeedsTwoPasses) {

@@ -155,6 +155,66 @@ TEST(TileRenderer, AutoIsWhatItsTaskSays) {
   EXPECT_EQ(y.costs.size(), 2u);
 }
 
+TEST(TileRenderer, BlocksOfAutoSitOutPasses) {
+  const ScenePtr scene = test::load_text(kScene);
+  ASSERT_TRUE(scene);
+  const std::atomic<bool> cancel = false;
+  const JobSpec spec = test::job(16, 12, {"sa:1", "auto"}, 8);
+  TileTask all = task(spec, {0, 0}, {0, 8}), some = all, fewer = task(spec, {0, 0}, {0, 4});
+  all.chosen = fewer.chosen = {{1, *parse_mix("bsdf:1+line-sa@u:1"), 2}};
+  some.chosen = {{1, *parse_mix("bsdf:1+line-sa@u:1"), 2, {255, 128, 255, 255}}};  // half of 4 groups of 2
+  const TilePixels x = render_tile(*scene, spec, all, cancel).pixels.mixes[1];
+  const TilePixels y = render_tile(*scene, spec, some, cancel).pixels.mixes[1];
+  const TilePixels z = render_tile(*scene, spec, fewer, cancel).pixels.mixes[1];
+  EXPECT_TRUE(x.block_passes.empty());
+  EXPECT_EQ(y.block_passes, (std::vector<int32_t>{8, 4, 8, 8}));
+  EXPECT_EQ(y.block_groups, (std::vector<int32_t>{4, 2, 4, 4}));
+  for (size_t i = 0; i < y.mean.size(); ++i) {
+    const bool second = i / 3 / 16 < 8 && i / 3 % 16 >= 8;
+    EXPECT_EQ(y.mean[i], second ? z.mean[i] : x.mean[i]) << i;
+    EXPECT_EQ(y.m2[i], second ? z.m2[i] : x.m2[i]) << i;
+  }
+  // In ranges: the same samples.
+  TileTask begin = some, end = some;
+  begin.passes[1] = {0, 4};
+  end.passes[1] = {4, 8};
+  const TilePixels b = render_tile(*scene, spec, begin, cancel).pixels.mixes[1];
+  const TilePixels e = render_tile(*scene, spec, end, cancel).pixels.mixes[1];
+  const size_t pixel = 3 * (2 * 16 + 12);
+  const double n = double(b.block_passes.empty() ? b.passes : b.block_passes[1]);
+  EXPECT_EQ(e.block_passes[1] + n, 4);
+  EXPECT_NEAR((n * double(b.mean[pixel]) + e.block_passes[1] * double(e.mean[pixel])) / 4, double(y.mean[pixel]), 1e-5);
+}
+
+TEST(TileRenderer, WholePassesOfAPilotTellOfBlocks) {
+  const ScenePtr scene = test::load_text(kScene);
+  ASSERT_TRUE(scene);
+  const std::atomic<bool> cancel = false;
+  const JobSpec spec = test::job(16, 12, {"auto"}, 8);
+  TileTask pilot;
+  pilot.kind = TaskKind::kPilot;
+  pilot.tile = spec.crop;
+  pilot.passes = {{0, 3}};
+  pilot.pilot_blocks = 5;
+  for (const char* text : {"sa:4", "bsdf:1", "bsdf:2+sa:2"}) pilot.chosen.push_back({0, *parse_mix(text), 1});
+  const MixCost cost = render_tile(*scene, spec, pilot, cancel).costs[0];
+  EXPECT_EQ(cost.passes, 3);
+  EXPECT_EQ(cost.candidate, 2) << "neither the wild one nor the unbounded one";
+  ASSERT_EQ(cost.blocks.size(), 4u);
+  double seconds = 0;
+  for (const BlockCost& block : cost.blocks) {
+    EXPECT_GT(block.relative_deviation, 0);
+    seconds += double(block.cpu_seconds);
+  }
+  EXPECT_NEAR(seconds * 3, cost.cpu_seconds, 1e-3 * cost.cpu_seconds);
+  // No time for two passes: some tiles make one, for its cost.
+  pilot.pilot_seconds = 1e-9;
+  EXPECT_EQ(render_tile(*scene, spec, pilot, cancel).costs[0].passes, 1);
+  EXPECT_TRUE(render_tile(*scene, spec, pilot, cancel).costs[0].blocks.empty());
+  pilot.id = 1;
+  EXPECT_EQ(render_tile(*scene, spec, pilot, cancel).costs[0].passes, 0);
+}
+
 /// A pilot of `auto` with these candidates on 5 blocks.
 std::vector<MixCost> candidate_costs(const Scene& scene, const std::vector<const char*>& candidates,
                                      uint64_t shuffle) {

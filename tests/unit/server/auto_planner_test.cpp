@@ -5,7 +5,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "proto/blocks.h"
 #include "server/planner.h"
+#include "server/replanner.h"
 
 namespace penumbra {
 namespace {
@@ -102,6 +104,45 @@ TEST(AutoPlanner, WholePassesTellWhatBlocksDoNot) {
   EXPECT_NEAR(after / before, 0.5, 0.01);
 }
 
+/// Whole passes of candidate `k`, which found `deviation` in the left half of the tile and `rest` in the right.
+void set_whole(Pilot& pilot, int tile, int k, float deviation, float rest) {
+  MixCost& cost = pilot[static_cast<size_t>(tile)][0];
+  cost.passes = 2;
+  cost.candidate = k;
+  cost.cpu_seconds = 2e-6 * kTilePixels;
+  for (int b = 0; b < 64; ++b) cost.blocks.push_back({64 * (b % 8 < 4 ? deviation : rest), 64e-6f});
+}
+
+TEST(AutoPlanner, BlocksShareInPassesByTheirError) {
+  Pilot pilot = uniform_pilot(2);
+  set_whole(pilot, 0, 3, 1, 0.2f);
+  set_whole(pilot, 1, 3, 1, 1);
+  const JobSpec spec = spec_of(2, CpuSecondsBudget{10});
+  const AutoPlan plan = planned(spec, pilot);
+  ASSERT_EQ(plan.tiles[0].shares.size(), 64u);
+  EXPECT_EQ(plan.tiles[0].shares[0], 255);
+  EXPECT_LT(plan.tiles[0].shares[7], 128);
+  EXPECT_TRUE(plan.tiles[1].shares.empty()) << "all blocks are alike";
+  // As noisy on the whole as the other tile, and all of that in one half.
+  EXPECT_GT(static_cast<double>(plan.tiles[0].passes) / static_cast<double>(plan.tiles[1].passes), 1.2);
+  const auto tiles = tiles_of(spec);
+  double pilot_seconds = 0, seconds = 0;
+  for (const auto& tile : pilot)
+    for (const MixCost& cost : tile) pilot_seconds += cost.cpu_seconds;
+  for (size_t t = 0; t < 2; ++t)
+    seconds += 1e-6 * kTilePixels * static_cast<double>(plan.tiles[t].passes) * mean_share(tiles[t], plan.tiles[t].shares);
+  EXPECT_NEAR(seconds, 10 - pilot_seconds - expected_repilot_seconds(spec), 0.5);
+  // The mean over the pixels is what counts as the mix's passes, and the smallest share has two groups.
+  const int64_t mean = mean_passes(spec, tiles, plan);
+  EXPECT_LT(mean, plan.tiles[0].passes);
+  const Plan run = make_plan(spec, {mean}, {plan});
+  EXPECT_GE(plan.tiles[0].passes * plan.tiles[0].shares[7] / 255, 2 * run.groups[0][0]);
+  EXPECT_EQ(run_task(spec, run, tiles, 0, 0).chosen[0].shares, plan.tiles[0].shares);
+  EXPECT_EQ(run.boundaries.back().passes, std::vector<int64_t>{mean});
+  // With a given number of passes every pixel has that number.
+  EXPECT_TRUE(planned(spec_of(2, SppBudget{16}), pilot).tiles[0].shares.empty());
+}
+
 TEST(AutoPlanner, NoTileIsLeftAlone) {
   Pilot pilot = uniform_pilot(4);
   for (size_t k = 0; k < auto_candidates().size(); ++k)
@@ -171,8 +212,8 @@ TEST(AutoPlanner, TasksCarryWhatStandsForAuto) {
   EXPECT_EQ(pilot.chosen.size(), auto_candidates().size());
   EXPECT_EQ(costs_of(pilot), 2 + auto_candidates().size());
   EXPECT_GT(pilot.passes[0].count(), 0);
-  EXPECT_EQ(pilot.passes[1].count(), 1) << "a whole pass of the first candidate";
-  EXPECT_EQ(pilot_task(spec, tiles, 1).passes[1].count(), 0);
+  EXPECT_GE(pilot.passes[1].count(), 2) << "whole passes";
+  EXPECT_EQ(pilot_task(spec_of(2, SppBudget{8}), tiles, 0).passes[0].count(), 0);
 
   const AutoPlan plan{1, auto_candidates(), {{2, 100}, {5, 7}}};
   const Plan run = make_plan(spec, {40, 54}, {plan});
