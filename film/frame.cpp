@@ -51,7 +51,8 @@ void merge(Frame& frame, const TileView& tile) {
   for (int y = tile.rect.y0; y < tile.rect.y1; ++y) {
     size_t pixel =
         static_cast<size_t>(y - frame.crop.y0) * stride + static_cast<size_t>(tile.rect.x0 - frame.crop.x0);
-    for (int x = tile.rect.x0; x < tile.rect.x1; ++x) merge_pixel(frame, pixel++, tile, source++, tile.counts_at(x, y));
+    for (int x = tile.rect.x0; x < tile.rect.x1; ++x)
+      merge_pixel(frame, pixel++, tile, source++, tile.counts_at(x, y));
   }
 }
 

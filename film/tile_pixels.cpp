@@ -114,14 +114,14 @@ absl::Status ReceivedTile::read() {
     TileView& p = mixes_[m];
     uint32_t blocks = 0;
     if (!in.get(p.rect.x0) || !in.get(p.rect.y0) || !in.get(p.rect.x1) || !in.get(p.rect.y1) ||
-        !in.get(p.passes) || !in.get(p.groups) ||
-        (version != kVersionWithoutBlocks && !in.get(blocks)))
+        !in.get(p.passes) || !in.get(p.groups) || (version != kVersionWithoutBlocks && !in.get(blocks)))
       return invalid_input("tile result: mix {}: truncated", m);
     if (const std::string fault = fault_of_header(p); !fault.empty())
       return invalid_input("tile result: mix {}: {}", m, fault);
     // An area below 2^62; its tripling cannot overflow, and view() bounds it by the bytes that are left.
     const uint64_t pixels = p.passes > 0 ? static_cast<uint64_t>(p.rect.area()) : 0;
-    if (!in.view(p.block_passes, blocks) || !in.view(p.block_groups, blocks) || !in.view(p.mean, 3 * pixels) || !in.view(p.m2, 3 * pixels) || !in.view(p.cost, pixels))
+    if (!in.view(p.block_passes, blocks) || !in.view(p.block_groups, blocks) ||
+        !in.view(p.mean, 3 * pixels) || !in.view(p.m2, 3 * pixels) || !in.view(p.cost, pixels))
       return invalid_input("tile result: mix {}: truncated", m);
     if (const std::string fault = fault_of(p); !fault.empty())
       return invalid_input("tile result: mix {}: {}", m, fault);

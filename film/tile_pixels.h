@@ -18,10 +18,10 @@ namespace penumbra {
 /// or of full size, and are not sent.
 struct TilePixels {
   PixelRect rect;
-  int64_t passes = 0;       ///< weight; with block counts the range's, which no block exceeds
-  int64_t groups = 0;       ///< independent groups among them, 1 <= groups <= passes
-  /// Where blocks have sat out some of the passes (proto/blocks.h): each one's own counts, row by row, no groups
-  /// where there are no passes. Empty: every pixel has the counts above.
+  int64_t passes = 0;  ///< weight; with block counts the range's, which no block exceeds
+  int64_t groups = 0;  ///< independent groups among them, 1 <= groups <= passes
+  /// Where blocks have sat out some of the passes (proto/blocks.h): each one's own counts, row by row, no
+  /// groups where there are no passes. Empty: every pixel has the counts above.
   std::vector<int32_t> block_passes = {}, block_groups = {};
   std::vector<float> mean;  ///< 3 per pixel
   std::vector<float> m2;    ///< 3 per pixel: sum of weight * (group mean - mean)^2
@@ -63,7 +63,8 @@ std::string fault_of(const TileView& pixels);
 
 /// Bytes of a result: `PNTR`, then little-endian: version u32, number of mixes u32; per mix x0 y0 x1 y1 i32,
 /// passes i64, groups i64, blocks u32 (their number, or 0); with passes > 0 the i32 arrays block_passes and
-/// block_groups and the float arrays mean, m2, cost, whose lengths follow from the rect. A result with a fault is a programmer's fault.
+/// block_groups and the float arrays mean, m2, cost, whose lengths follow from the rect. A result with a
+/// fault is a programmer's fault.
 std::string serialize(const TileResult& result);
 
 /// A result as it came: its bytes, and where in them each mix lies. Nothing is copied: a server sees

@@ -12,8 +12,8 @@ namespace penumbra {
 /// lines becomes one with points (worker/strategies), and costs and errs accordingly.
 const std::vector<Mix>& auto_candidates();
 
-/// Whether f / p is bounded, because directions are also drawn from the material's lobes. Of any other mix a few
-/// samples cannot tell what it does where a lobe is narrow.
+/// Whether f / p is bounded, because directions are also drawn from the material's lobes. Of any other mix a
+/// few samples cannot tell what it does where a lobe is narrow.
 bool is_bounded(const Mix& mix);
 
 /// Places of the automatic mixes.

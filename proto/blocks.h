@@ -1,6 +1,6 @@
 #pragma once
-// How an automatic mix shares out the passes of a tile among small blocks of its pixels: where little varies a
-// block sits some of them out. Pure arithmetic that planner, worker and film have in common.
+// How an automatic mix shares out the passes of a tile among small blocks of its pixels: where little varies
+// a block sits some of them out. Pure arithmetic that planner, worker and film have in common.
 #include <cstdint>
 #include <vector>
 
@@ -8,13 +8,15 @@
 
 namespace penumbra {
 
-/// Edge of a block in pixels, counted from the tile's upper left corner; those at its right and bottom edges may
-/// be smaller.
+/// Edge of a block in pixels, counted from the tile's upper left corner; those at its right and bottom edges
+/// may be smaller.
 constexpr int kBlock = 8;
 /// The share of a block that has a part in every pass.
 constexpr int kWholeShare = 255;
 
-inline int block_columns(const PixelRect& tile) { return (tile.width() + kBlock - 1) / kBlock; }
+inline int block_columns(const PixelRect& tile) {
+  return (tile.width() + kBlock - 1) / kBlock;
+}
 inline size_t block_count(const PixelRect& tile) {
   return static_cast<size_t>(block_columns(tile)) *
          static_cast<size_t>((tile.height() + kBlock - 1) / kBlock);
@@ -28,12 +30,13 @@ inline PixelRect block_rect(const PixelRect& tile, size_t block) {
   const auto columns = static_cast<size_t>(block_columns(tile));
   const int x0 = tile.x0 + kBlock * static_cast<int>(block % columns);
   const int y0 = tile.y0 + kBlock * static_cast<int>(block / columns);
-  return {x0, y0, x0 + kBlock < tile.x1 ? x0 + kBlock : tile.x1, y0 + kBlock < tile.y1 ? y0 + kBlock : tile.y1};
+  return {x0, y0, x0 + kBlock < tile.x1 ? x0 + kBlock : tile.x1,
+          y0 + kBlock < tile.y1 ? y0 + kBlock : tile.y1};
 }
 
-/// Of the first g groups of a tile, those in which a block with share s of 1 has a part: floor(g s + 1 - s/2). Whole
-/// groups, because the samples of a group are stratified together; the first one always, and all if s is 1.
-/// `share` in [1, kWholeShare].
+/// Of the first g groups of a tile, those in which a block with share s of 1 has a part: floor(g s + 1 -
+/// s/2). Whole groups, because the samples of a group are stratified together; the first one always, and all
+/// if s is 1. `share` in [1, kWholeShare].
 inline int64_t groups_of_block(int64_t groups, int share) {
   const int64_t rest = groups % kWholeShare;
   return (groups / kWholeShare) * share + (2 * rest * share + 2 * kWholeShare - share) / (2 * kWholeShare);

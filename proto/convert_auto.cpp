@@ -43,8 +43,7 @@ absl::StatusOr<AutoPlan> from_proto(const v1::AutoPlan& message) {
     RETURN_IF_ERROR(
         check_range("auto_plans.tiles.candidate", tile.candidate(), 0, message.candidates_size() - 1));
     RETURN_IF_ERROR(check_range<int64_t>("auto_plans.tiles.passes", tile.passes(), 1, kMostPasses));
-    plan.tiles.push_back(
-        {tile.candidate(), tile.passes(), {tile.shares().begin(), tile.shares().end()}});
+    plan.tiles.push_back({tile.candidate(), tile.passes(), {tile.shares().begin(), tile.shares().end()}});
   }
   return plan;
 }

@@ -21,9 +21,18 @@ struct PixelRect {
   int64_t area() const { return int64_t{width()} * height(); }
 };
 
-struct CpuSecondsBudget { double seconds = 0; bool operator==(const CpuSecondsBudget&) const = default; };
-struct SppBudget { int64_t passes = 0; bool operator==(const SppBudget&) const = default; };
-struct TargetErrorBudget { double relmse = 0; bool operator==(const TargetErrorBudget&) const = default; };
+struct CpuSecondsBudget {
+  double seconds = 0;
+  bool operator==(const CpuSecondsBudget&) const = default;
+};
+struct SppBudget {
+  int64_t passes = 0;
+  bool operator==(const SppBudget&) const = default;
+};
+struct TargetErrorBudget {
+  double relmse = 0;
+  bool operator==(const TargetErrorBudget&) const = default;
+};
 /// What ends a mix: CPU seconds for the whole image summed over cores, camera samples per pixel, or an
 /// estimated relMSE.
 using Budget = std::variant<CpuSecondsBudget, SppBudget, TargetErrorBudget>;
@@ -31,7 +40,11 @@ using Budget = std::variant<CpuSecondsBudget, SppBudget, TargetErrorBudget>;
 enum class SamplerKind { kIndependent, kStratified, kSobol };
 
 /// A reply to «which pixels to look at closely».
-struct Region { std::string name; PixelRect rect; bool operator==(const Region&) const = default; };
+struct Region {
+  std::string name;
+  PixelRect rect;
+  bool operator==(const Region&) const = default;
+};
 
 /// SHA-256, lower-case hexadecimal, 64 characters.
 using Digest = std::string;
@@ -78,8 +91,8 @@ struct AutoPlan {
   bool operator==(const AutoPlan&) const = default;
 };
 
-/// What was planned of a run in stages before its present plan took over (server/stages.h). It still decides the
-/// passes up to its border.
+/// What was planned of a run in stages before its present plan took over (server/stages.h). It still decides
+/// the passes up to its border.
 struct EarlierPlan {
   double until = 0;                         ///< the border, as a share of all passes; in (0,1)
   std::vector<int64_t> passes;              ///< totals as they were planned then: per mix, as JobSpec::plan
@@ -89,25 +102,26 @@ struct EarlierPlan {
 
 /// Everything that decides a job's pixels, given the bundle's bytes.
 struct JobSpec {
-  std::string scene;          ///< absolute path on the client's machine, for people
-  Digest bundle;              ///< digest of the bundle's index
+  std::string scene;  ///< absolute path on the client's machine, for people
+  Digest bundle;      ///< digest of the bundle's index
   std::vector<Mix> mixes;
   Budget budget;
   SamplerKind sampler = SamplerKind::kStratified;
   int width = 0, height = 0;  ///< full image, pixels
   PixelRect crop;             ///< the part that is rendered, absolute pixels
   int max_depth = 1;          ///< vertices with direct light; >1 follows specular chains
-  /// > 0: camera samples are moved to the nearest centre of a grid of N × N cells a pixel, so that light sampling
-  /// alone is compared with renderers that take theirs there. The image is then the mean over these points.
+  /// > 0: camera samples are moved to the nearest centre of a grid of N × N cells a pixel, so that light
+  /// sampling alone is compared with renderers that take theirs there. The image is then the mean over these
+  /// points.
   int camera_grid = 0;
-  int tile = 64;              ///< edge of a tile, pixels
+  int tile = 64;  ///< edge of a tile, pixels
   uint64_t seed = 0;
-  bool strict = false;        ///< warnings about the scene are errors
+  bool strict = false;  ///< warnings about the scene are errors
   /// Passes per mix, fixed (replay); empty: from the budget. Of an automatic mix: the mean over the pixels.
   std::vector<int64_t> plan;
-  std::vector<AutoPlan> auto_plans;  ///< with `plan`: one for each automatic mix, in their order
+  std::vector<AutoPlan> auto_plans;        ///< with `plan`: one for each automatic mix, in their order
   std::vector<EarlierPlan> earlier_plans;  ///< with `plan`, of a run in stages: borders ascend
-  std::string reference;      ///< path on the client's machine, for people and `fetch`
+  std::string reference;                   ///< path on the client's machine, for people and `fetch`
   std::vector<Region> regions;
   std::optional<Probe> probe;
   bool operator==(const JobSpec&) const = default;
@@ -125,16 +139,16 @@ enum class TaskKind { kPilot, kRun };
 
 /// What stands for an automatic mix of the job in one tile.
 struct ChosenMix {
-  int mix = 0;        ///< the automatic mix's place in JobSpec::mixes
-  Mix chosen;         ///< not automatic
-  int64_t group = 1;  ///< passes per independently scrambled group, in place of the task's
+  int mix = 0;                       ///< the automatic mix's place in JobSpec::mixes
+  Mix chosen;                        ///< not automatic
+  int64_t group = 1;                 ///< passes per independently scrambled group, in place of the task's
   std::vector<uint8_t> shares = {};  ///< TilePlan::shares
   bool operator==(const ChosenMix&) const = default;
 };
 
 /// One tile × a range of passes × all mixes that are timed against each other.
 struct TileTask {
-  uint64_t id = 0;                ///< unique within the job, in merge order
+  uint64_t id = 0;  ///< unique within the job, in merge order
   TaskKind kind = TaskKind::kRun;
   PixelRect tile;
   std::vector<PassRange> passes;  ///< one per mix; may be empty for a mix
@@ -143,8 +157,8 @@ struct TileTask {
   /// kPilot: thread-CPU seconds after which no further pass of a mix is begun (0: all passes).
   double pilot_seconds = 0;
   /// kRun: one for each automatic mix, in their order. kPilot: all candidates of all automatic mixes,
-  /// measured on `pilot_blocks` small blocks of pixels (fewer where pilot_seconds per mix are up). Then the best of
-  /// them makes the mix's `passes` of the whole tile, as far as as much time again allows.
+  /// measured on `pilot_blocks` small blocks of pixels (fewer where pilot_seconds per mix are up). Then the
+  /// best of them makes the mix's `passes` of the whole tile, as far as as much time again allows.
   std::vector<ChosenMix> chosen;
   int pilot_blocks = 0;
   /// kRun: passes with the pilot's random numbers that are timed between the others and thrown away: what the
@@ -168,8 +182,8 @@ struct Calibration {
 
 /// What a pilot has found in a block of pixels (proto/blocks.h): sums over its pixels, of one pass.
 struct BlockCost {
-  /// s / √(mean² + 1e-2), s² the variance of a pixel summed over channels. Deviations, because few passes tell their
-  /// mean far better than that of variances, which a few rare samples may hold most of.
+  /// s / √(mean² + 1e-2), s² the variance of a pixel summed over channels. Deviations, because few passes
+  /// tell their mean far better than that of variances, which a few rare samples may hold most of.
   float relative_deviation = 0;
   float cpu_seconds = 0;
   bool operator==(const BlockCost&) const = default;
@@ -177,16 +191,17 @@ struct BlockCost {
 
 /// What one mix of one tile task cost. Never part of the image's bits.
 struct MixCost {
-  int64_t passes = 0;            ///< passes done
-  double cpu_seconds = 0;        ///< thread CPU over the tile loop
-  uint64_t rays = 0;             ///< camera, specular and shadow rays
+  int64_t passes = 0;      ///< passes done
+  double cpu_seconds = 0;  ///< thread CPU over the tile loop
+  uint64_t rays = 0;       ///< camera, specular and shadow rays
   uint64_t line_queries = 0;
-  uint64_t non_finite = 0;       ///< samples refused at the film's door
+  uint64_t non_finite = 0;  ///< samples refused at the film's door
   /// Sum over the tile's pixels and channels of s²/(mean² + 1e-2), s² the variance of one pass; what a
   /// pilot tells `--target-error`. 0 with fewer than two passes.
   double relative_variance = 0;
   Calibration calibration;  ///< timed beside this mix's slices; none in a pilot
-  // Of a candidate of `auto`, which a pilot measures on some of the tile's pixels: figures are sums over these.
+  // Of a candidate of `auto`, which a pilot measures on some of the tile's pixels: figures are sums over
+  // these.
   int64_t pixels = 0;  ///< measured; `passes` is then the number of passes in each
   /// Sum over the measured pixels of the square of their part of relative_variance: how sure that is.
   double relative_variance_squares = 0;
@@ -197,15 +212,18 @@ struct MixCost {
   // Of a run task's passes that were thrown away (TileTask::repilot); in no other figure.
   int64_t repilot_passes = 0;
   double repilot_seconds = 0;
-  /// Of an automatic mix in a pilot: which of the candidates made whole passes of the tile, and, if there were at
-  /// least two, what they found in each block.
+  /// Of an automatic mix in a pilot: which of the candidates made whole passes of the tile, and, if there
+  /// were at least two, what they found in each block.
   int candidate = 0;
   std::vector<BlockCost> blocks = {};
   bool operator==(const MixCost&) const = default;
 };
 
 /// One effect that a scene calls for (design §8), and why.
-struct Need { std::string effect, why; bool operator==(const Need&) const = default; };
+struct Need {
+  std::string effect, why;
+  bool operator==(const Need&) const = default;
+};
 
 /// What a worker learnt while it loaded a scene.
 struct LoadReport {

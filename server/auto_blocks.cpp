@@ -9,8 +9,8 @@
 namespace penumbra {
 namespace {
 
-// A block's own measurement counts as much as those of so many neighbours: it is some hundred samples, of which few
-// may hold most of the variance.
+// A block's own measurement counts as much as those of so many neighbours: it is some hundred samples, of
+// which few may hold most of the variance.
 constexpr double kOwnWeight = 4;
 // What every block is presumed to have of the tile's mean, whatever the pilot has (not) seen there.
 constexpr double kCommonPart = 0.2;
@@ -67,7 +67,8 @@ SharedOut shared_out(const PixelRect& tile, const std::vector<BlockCost>& blocks
   const std::vector<double> variances = squares(tile, blocks);
   std::vector<double> costs;
   for (const BlockCost& block : blocks) costs.push_back(static_cast<double>(block.cpu_seconds));
-  const std::vector<double> variance = smoothed_density(tile, variances), cost = smoothed_density(tile, costs);
+  const std::vector<double> variance = smoothed_density(tile, variances),
+                            cost = smoothed_density(tile, costs);
   std::vector<double> weights;
   for (size_t b = 0; b < blocks.size(); ++b) weights.push_back(std::sqrt(variance[b] / cost[b]));
   const double largest = *std::max_element(weights.begin(), weights.end());

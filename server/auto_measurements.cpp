@@ -8,8 +8,8 @@
 namespace penumbra {
 namespace {
 
-/// How much more a whole pass costs than the candidates' few pixels say, which are soon warm in caches; 1 where no
-/// tile has made one.
+/// How much more a whole pass costs than the candidates' few pixels say, which are soon warm in caches; 1
+/// where no tile has made one.
 double whole_pass_factor(const JobSpec& spec, const std::vector<PixelRect>& tiles,
                          const std::vector<std::vector<MixCost>>& pilot, size_t mix, size_t first) {
   double whole = 0, blocks = 0;

@@ -21,8 +21,8 @@ struct Measurements {
   double pilot_seconds = 0;
 };
 
-/// Of the job's automatic mix number `number` among them; `pilot[tile]` as in plan_auto. Internal if a pilot has
-/// measured nothing.
+/// Of the job's automatic mix number `number` among them; `pilot[tile]` as in plan_auto. Internal if a pilot
+/// has measured nothing.
 absl::StatusOr<Measurements> measurements(const JobSpec& spec, const std::vector<PixelRect>& tiles,
                                           const std::vector<std::vector<MixCost>>& pilot, size_t number);
 

@@ -141,7 +141,8 @@ Table smoothed(const Table& figures, const Table& pixels, const std::vector<doub
   return out;
 }
 
-/// One tile's best candidate, and what a pass of it costs and leaves: of the whole tile, with its blocks' shares.
+/// One tile's best candidate, and what a pass of it costs and leaves: of the whole tile, with its blocks'
+/// shares.
 struct Choice {
   int candidate;
   double variance, cost;
@@ -157,9 +158,9 @@ std::vector<double> image_ratios(const std::vector<int>& candidates) {
   return out;
 }
 
-/// How much varies in each tile, from two views of it: what the candidates found in few pixels (`few`, per tile), and
-/// the deviations of whole passes, where there were any. Both are noisy, in ways of their own: their geometric mean,
-/// in the first one's units.
+/// How much varies in each tile, from two views of it: what the candidates found in few pixels (`few`, per
+/// tile), and the deviations of whole passes, where there were any. Both are noisy, in ways of their own:
+/// their geometric mean, in the first one's units.
 std::vector<double> tile_variances(const std::vector<PixelRect>& tiles, const Measurements& m,
                                    std::vector<double> few) {
   std::vector<double> whole;

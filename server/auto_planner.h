@@ -25,12 +25,12 @@ struct AutoSpending {
 };
 
 /// The plan of the job's automatic mix number `number` among them. `pilot[tile]` are the costs of the pilot
-/// tasks: one per mix of the job (of an automatic mix: whole passes of one of its candidates, where there were any),
-/// then one per candidate of each automatic mix. CPU seconds S: the passes that, by the pilot's costs, take S
-/// less what the pilot and its repetitions take; at least one each, and at least what is rendered already.
-/// Target error E: the passes that bring Σ_t V_t / N_t down to E times pixels and channels; at least two
-/// each. Passes: as many in every tile; costs are counted work instead of seconds. Internal if a pilot has
-/// measured nothing.
+/// tasks: one per mix of the job (of an automatic mix: whole passes of one of its candidates, where there
+/// were any), then one per candidate of each automatic mix. CPU seconds S: the passes that, by the pilot's
+/// costs, take S less what the pilot and its repetitions take; at least one each, and at least what is
+/// rendered already. Target error E: the passes that bring Σ_t V_t / N_t down to E times pixels and channels;
+/// at least two each. Passes: as many in every tile; costs are counted work instead of seconds. Internal if a
+/// pilot has measured nothing.
 absl::StatusOr<AutoPlan> plan_auto(const JobSpec& spec, const std::vector<PixelRect>& tiles,
                                    const std::vector<std::vector<MixCost>>& pilot, size_t number,
                                    const AutoSpending& spending = {});

@@ -309,10 +309,12 @@ static void add_boundaries(const JobSpec& spec, Plan& plan, const std::vector<Sh
     size_t automatic = 0;
     for (size_t m = 0; m < spec.mixes.size(); ++m) {
       if (spec.mixes[m].automatic) {
-        boundary.passes.push_back(mean_over_pixels(spec, tiles, plan.planned.autos[automatic], now[automatic]));
+        boundary.passes.push_back(
+            mean_over_pixels(spec, tiles, plan.planned.autos[automatic], now[automatic]));
         ++automatic;
       } else {
-        boundary.passes.push_back(std::max(before[m], passes_at(share, stages_of(plan.planned, m), plan.group)));
+        boundary.passes.push_back(
+            std::max(before[m], passes_at(share, stages_of(plan.planned, m), plan.group)));
       }
     }
     if (now == before_autos && boundary.passes == before) {
@@ -390,9 +392,8 @@ TileTask run_task(const JobSpec& spec, const Plan& plan, const std::vector<Pixel
   task.group = plan.group;
   for (size_t a = 0; a < plan.planned.autos.size(); ++a) {
     const AutoPlan& planned = plan.planned.autos[a];
-    task.chosen.push_back(
-        {planned.mix, planned.candidates[planned.tiles[tile].candidate], plan.groups[a][tile],
-         planned.tiles[tile].shares});
+    task.chosen.push_back({planned.mix, planned.candidates[planned.tiles[tile].candidate],
+                           plan.groups[a][tile], planned.tiles[tile].shares});
   }
   task.repilot = repilot_of(spec, plan, range, tile);
   task.shuffle = scramble(spec.seed, first_id + index);

@@ -10,14 +10,14 @@
 namespace penumbra {
 namespace {
 
-/// What whole passes of an automatic mix's pilot may take, in units of what its candidates may. Two are worth much,
-/// and dark tiles pay for bright ones; more than two are not.
+/// What whole passes of an automatic mix's pilot may take, in units of what its candidates may. Two are worth
+/// much, and dark tiles pay for bright ones; more than two are not.
 constexpr double kShareOfTwo = 6, kShareOfMore = 2;
 /// Where there is time for one such pass only it is made in every so many tiles.
 constexpr uint64_t kCalibrationTiles = 8;
 
-/// The candidate by which a tile's blocks are compared: the one that has done best here, if its error is bounded
-/// wherever it has not looked.
+/// The candidate by which a tile's blocks are compared: the one that has done best here, if its error is
+/// bounded wherever it has not looked.
 size_t level_candidate(const std::vector<ChosenMix>& candidates, const std::vector<MixCost>& costs) {
   size_t best = candidates.size();
   double least = std::numeric_limits<double>::infinity();
@@ -30,10 +30,12 @@ size_t level_candidate(const std::vector<ChosenMix>& candidates, const std::vect
   return best;
 }
 
-/// Whole passes of an automatic mix's tile by one of its candidates: what they cost, and what varies in each block.
-/// Where there is no time for two of them they tell no more than their cost, which is asked of some tiles only.
-MixCost whole_passes(const Rendering& rendering, const TileTask& task, const std::vector<ChosenMix>& candidates,
-                     const std::vector<MixCost>& costs, const std::atomic<bool>& cancel) {
+/// Whole passes of an automatic mix's tile by one of its candidates: what they cost, and what varies in each
+/// block. Where there is no time for two of them they tell no more than their cost, which is asked of some
+/// tiles only.
+MixCost whole_passes(const Rendering& rendering, const TileTask& task,
+                     const std::vector<ChosenMix>& candidates, const std::vector<MixCost>& costs,
+                     const std::atomic<bool>& cancel) {
   const size_t k = level_candidate(candidates, costs);
   const auto index = size_t(candidates[0].mix);
   if (k == candidates.size() || task.passes[index].count() == 0) return {};
@@ -49,9 +51,9 @@ MixCost whole_passes(const Rendering& rendering, const TileTask& task, const std
     if (cancel.load(std::memory_order_relaxed)) return {};
     run.pass();
   } while (run.left() > 0 &&
-           (run.passes() < 2
-                ? two
-                : affords(run.cpu_seconds() * double(run.passes() + 1) / double(run.passes()), kShareOfMore)));
+           (run.passes() < 2 ? two
+                             : affords(run.cpu_seconds() * double(run.passes() + 1) / double(run.passes()),
+                                       kShareOfMore)));
   MixCost cost = run.cost();
   cost.candidate = int(k);
   if (run.passes() > 1) cost.blocks = run.blocks();

@@ -26,7 +26,9 @@ void TileAccumulator::end_pass(int64_t pass, double cpu_seconds) {
   if ((pass + 1) % group_ == 0) end_group();
 }
 
-void TileAccumulator::finish() { end_group(); }
+void TileAccumulator::finish() {
+  end_group();
+}
 
 void TileAccumulator::end_group() {
   for (Pixel& p : pixels_) {
@@ -75,7 +77,8 @@ double TileAccumulator::Pixel::relative_variance(const Rgb& means) const {
   double total = 0;
   for (int c = 0; c < 3; ++c)
     if (moments[c].groups > 1)
-      total += moments[c].m2 / double(moments[c].groups - 1) / (double(means[c]) * double(means[c]) + kRelMseEpsilon);
+      total += moments[c].m2 / double(moments[c].groups - 1) /
+               (double(means[c]) * double(means[c]) + kRelMseEpsilon);
   return total;
 }
 

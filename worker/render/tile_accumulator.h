@@ -30,17 +30,18 @@ class TileAccumulator {
   /// Sum over pixels and channels of s²/(mean² + 1e-2), s² the variance of a pass; 0 below two groups.
   double relative_variance() const;
   /// What a pass leaves and costs in each block of pixels; every pixel has been in every pass. From few
-  /// passes, so a pixel's deviation is put in relation to the mean of the pixels around it: its own mean would be
-  /// zero but for the sample that makes the deviation, and say the less of it the rarer such samples are.
+  /// passes, so a pixel's deviation is put in relation to the mean of the pixels around it: its own mean
+  /// would be zero but for the sample that makes the deviation, and say the less of it the rarer such samples
+  /// are.
   std::vector<BlockCost> blocks() const;
 
  private:
   struct Pixel {
     double sum[3] = {0, 0, 0};  ///< of the open group
     Moments moments[3];
-    int64_t in_group = 0;       ///< passes in the open group
-    uint64_t ticks = 0;         ///< of the open pass
-    double cost = 0;            ///< CPU µs
+    int64_t in_group = 0;  ///< passes in the open group
+    uint64_t ticks = 0;    ///< of the open pass
+    double cost = 0;       ///< CPU µs
     /// Sum over channels, with the squares of these means in the denominator.
     double relative_variance(const Rgb& means) const;
   };

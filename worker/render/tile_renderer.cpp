@@ -73,8 +73,8 @@ class Repilot {
   std::vector<std::multiset<int64_t>> places_;  ///< per mix: its own passes that one of the pilot's precedes
 };
 
-/// A pilot measures until its time is up, at least one pass; the first is thrown away if there is time. Automatic
-/// mixes have a pilot of their own.
+/// A pilot measures until its time is up, at least one pass; the first is thrown away if there is time.
+/// Automatic mixes have a pilot of their own.
 bool run_pilot(std::vector<std::unique_ptr<MixRun>>& runs, const JobSpec& job, double seconds,
                const std::atomic<bool>& cancel) {
   for (size_t m = 0; m < runs.size(); ++m) {

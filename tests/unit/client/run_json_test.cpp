@@ -90,7 +90,8 @@ TEST(RunJson, PlansOfAutoAreToldAndReplayed) {
   spec.mixes[1] = *parse_mix("auto");
   spec.tile = 16;
   run.summary.mixes[1].mix = spec.mixes[1];
-  run.summary.auto_plans = {{1, {*parse_mix("sa:4"), *parse_mix("bsdf:2+sa:2")}, {{1, 20}, {0, 108, {255, 9, 70, 8}}}}};
+  run.summary.auto_plans = {
+      {1, {*parse_mix("sa:4"), *parse_mix("bsdf:2+sa:2")}, {{1, 20}, {0, 108, {255, 9, 70, 8}}}}};
   run.summary.earlier_plans = {{0.75, {10, 60}, {{18, 102}}}};
   const Json json = Json::parse(json_text(run_json(run)));
   const Json& plan = json["auto_plans"][0];
@@ -120,7 +121,8 @@ TEST(RunJson, PlansOfAutoAreToldAndReplayed) {
   EXPECT_THAT(fault([](Json& plans) { plans[0]["tiles"][0]["candidate"] = 2; }),
               HasSubstr("candidate 2 of 2"));
   EXPECT_THAT(fault([](Json& plans) { plans[0]["tiles"][0]["passes"] = 0; }), HasSubstr("0 passes"));
-  EXPECT_THAT(fault([](Json& plans) { plans[0]["tiles"][1]["shares"][0] = 256; }), HasSubstr("a share of 256"));
+  EXPECT_THAT(fault([](Json& plans) { plans[0]["tiles"][1]["shares"][0] = 256; }),
+              HasSubstr("a share of 256"));
   EXPECT_THAT(fault([](Json& plans) { plans[0]["tiles"][1]["shares"].erase(1); }), HasSubstr("3 shares"));
   EXPECT_THAT(fault([](Json& plans) { plans[0]["mix"] = 0; }), HasSubstr("auto_plans"));
   EXPECT_THAT(fault([](Json& plans) { plans[0].erase("candidates"); }), HasSubstr("candidates"));

@@ -55,7 +55,7 @@ TEST(Frame, BlocksCountForThemselves) {
   const FilmImage image = resolve(frame);
   EXPECT_EQ(image.samples[0], 12);
   EXPECT_EQ(image.samples[15], 8);
-  EXPECT_FLOAT_EQ(image.rgb[0], 2);            // (8 · 1 + 4 · 4) / 12
+  EXPECT_FLOAT_EQ(image.rgb[0], 2);             // (8 · 1 + 4 · 4) / 12
   EXPECT_FLOAT_EQ(image.rgb[45], 1 + 10 * 15);  // as before
   EXPECT_FLOAT_EQ(image.variance[45], 1.f / 8);
 }

@@ -132,7 +132,7 @@ std::string with(size_t offset, Number value) {
 
 TEST(TileResult, LiesAreRefused) {
   EXPECT_FALSE(ReceivedTile::parse(with<char>(0, 'X')).ok());
-  EXPECT_FALSE(ReceivedTile::parse(with<uint32_t>(4, 2)).ok()) << "version";
+  EXPECT_FALSE(ReceivedTile::parse(with<uint32_t>(4, 3)).ok()) << "version";
   EXPECT_FALSE(ReceivedTile::parse(with<uint32_t>(8, 0xffffffff)).ok()) << "number of mixes";
   EXPECT_FALSE(ReceivedTile::parse(with<int32_t>(kFirstMix, -1)).ok()) << "x0";
   EXPECT_FALSE(ReceivedTile::parse(with<int32_t>(kFirstMix + 8, 64)).ok()) << "empty rect";
@@ -140,10 +140,11 @@ TEST(TileResult, LiesAreRefused) {
   EXPECT_FALSE(ReceivedTile::parse(with<int64_t>(kFirstMix + 16, -8)).ok()) << "passes";
   EXPECT_FALSE(ReceivedTile::parse(with<int64_t>(kFirstMix + 24, 0)).ok()) << "no group";
   EXPECT_FALSE(ReceivedTile::parse(with<int64_t>(kFirstMix + 24, 9)).ok()) << "more groups than passes";
+  EXPECT_FALSE(ReceivedTile::parse(with<uint32_t>(kFirstMix + 32, 0xffffffff)).ok()) << "number of blocks";
 }
 
 TEST(TileResult, NothingNonFiniteEnters) {
-  const size_t mean = kFirstMix + 32, m2 = mean + 18 * 4, cost = m2 + 18 * 4;
+  const size_t mean = kFirstMix + 36, m2 = mean + 18 * 4, cost = m2 + 18 * 4;
   for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()})
     for (const size_t place : {mean, m2, cost + 5 * 4})
       EXPECT_FALSE(ReceivedTile::parse(with(place, bad)).ok());

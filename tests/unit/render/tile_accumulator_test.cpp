@@ -74,7 +74,8 @@ TEST(TileAccumulator, BlocksAddUp) {
   const std::vector<BlockCost> blocks = tile.blocks();
   ASSERT_EQ(blocks.size(), 2u);
   EXPECT_EQ(blocks[0].relative_deviation, 0);
-  EXPECT_NEAR(blocks[1].relative_deviation, 8 * std::sqrt(3 / 1.01), 1e-3);  // s² = 1 about the mean 1, three times
+  EXPECT_NEAR(blocks[1].relative_deviation, 8 * std::sqrt(3 / 1.01),
+              1e-3);  // s² = 1 about the mean 1, three times
   EXPECT_FLOAT_EQ(blocks[0].cpu_seconds, 1e-6f);
   EXPECT_FLOAT_EQ(blocks[1].cpu_seconds, 3e-6f);
 }

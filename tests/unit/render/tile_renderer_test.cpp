@@ -63,7 +63,8 @@ TEST(TileRenderer, RepeatedPassesOfThePilotAreTimedAndLeaveNoTrace) {
   const TileTask plain = task(spec, {4, 13}, {0, 9});
   TileTask repeats = plain;
   repeats.repilot = {{2, 5}, {0, 0}};
-  const TaskOutcome x = render_tile(*scene, spec, plain, cancel), y = render_tile(*scene, spec, repeats, cancel);
+  const TaskOutcome x = render_tile(*scene, spec, plain, cancel),
+                    y = render_tile(*scene, spec, repeats, cancel);
   for (size_t m = 0; m < 2; ++m) {
     EXPECT_EQ(x.pixels.mixes[m].mean, y.pixels.mixes[m].mean);
     EXPECT_EQ(x.pixels.mixes[m].m2, y.pixels.mixes[m].m2);
@@ -183,7 +184,8 @@ TEST(TileRenderer, BlocksOfAutoSitOutPasses) {
   const size_t pixel = 3 * (2 * 16 + 12);
   const double n = double(b.block_passes.empty() ? b.passes : b.block_passes[1]);
   EXPECT_EQ(e.block_passes[1] + n, 4);
-  EXPECT_NEAR((n * double(b.mean[pixel]) + e.block_passes[1] * double(e.mean[pixel])) / 4, double(y.mean[pixel]), 1e-5);
+  EXPECT_NEAR((n * double(b.mean[pixel]) + e.block_passes[1] * double(e.mean[pixel])) / 4,
+              double(y.mean[pixel]), 1e-5);
 }
 
 TEST(TileRenderer, WholePassesOfAPilotTellOfBlocks) {
