@@ -36,6 +36,8 @@ class Agent {
   /// Finishes what is begun, hands back the rest, then ends. With `grace_seconds`: what is not done by then
   /// is cancelled and handed back too.
   void drain(std::optional<double> grace_seconds);
+  /// It holds no tile and has nothing to report.
+  bool idle() const { return board_.empty(); }
   /// True once the agent has ended by itself: drained, or refused by the server.
   bool ended() const { return ended_; }
   /// Ends the threads. OK, or why the server has refused this worker.
