@@ -1,7 +1,6 @@
 #include "worker/agent/program.h"
 
 #include <signal.h>
-#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
 
@@ -12,10 +11,12 @@
 #include <thread>
 
 #include "proto/channel.h"
+#include "proto/log.h"
 #include "proto/status.h"
 #include "worker/agent/agent.h"
 #include "worker/agent/flags.h"
 #include "worker/agent/identity.h"
+#include "worker/agent/log_capture.h"
 
 namespace penumbra {
 namespace {
@@ -28,7 +29,7 @@ struct Options {
   std::string server;
   int threads = 0;
   std::string cache, name, max_memory, drain_after, drain_idle;
-  std::string log_level = "info";
+  std::string log_level = "info", log_format = "text";
   Credentials credentials;
 };
 
@@ -52,6 +53,9 @@ void add_flags(CLI::App& app, Options& options) {
   app.add_option("--token-file", options.credentials.token_file, "file with the token to send");
   app.add_option("--log-level", options.log_level, "trace, debug, info, warning, error or off")
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))
+      ->capture_default_str();
+  app.add_option("--log-format", options.log_format, "text, or json: one object an event")
+      ->check(CLI::IsMember({"text", "json"}))
       ->capture_default_str();
   app.set_version_flag("--version", "penumbra-worker " PENUMBRA_VERSION);
 }
@@ -162,8 +166,8 @@ int run_worker(int argc, char** argv, const SceneLoader& loader) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kBadUsage;
   }
-  spdlog::set_default_logger(spdlog::stderr_logger_mt("worker"));
-  spdlog::set_level(spdlog::level::from_str(options.log_level));
+  start_log("worker", options.log_level, options.log_format == "json" ? LogFormat::kJson : LogFormat::kText,
+            {make_capture_sink()});
   const absl::Status status = work(options, loader);
   if (status.ok()) return 0;
   spdlog::error("{}", message_of(status));

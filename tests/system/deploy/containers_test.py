@@ -36,21 +36,21 @@ def packages_of(stage):
     return installed | (packages_of(base) if base in stages() else set())
 
 
-def owner(library):
-    """The package of a library's file; /lib and /usr/lib are one, but dpkg knows each file by one of them."""
-    real = os.path.realpath(library)
-    for path in (real, real.removeprefix("/usr"), library, library.removeprefix("/usr")):
-        done = subprocess.run(["dpkg", "-S", path], capture_output=True, text=True)
-        if done.returncode == 0:
-            return done.stdout.split(":")[0]
-    raise AssertionError(f"no package has {library}")
-
-
 def needed(program):
     """Packages of the libraries that the program itself names."""
     names = re.findall(r"\(NEEDED\).*\[(\S+)\]", subprocess.run(["readelf", "-d", program], capture_output=True, text=True, check=True).stdout)
     where = dict(re.findall(r"(\S+) => (\S+)", subprocess.run(["ldd", program], capture_output=True, text=True, check=True).stdout))
-    return {owner(where[name]) for name in names if name in where}
+    real = {os.path.realpath(where[name]) for name in names if name in where}
+    # /lib and /usr/lib are one, but dpkg knows each file by one of them. One question: each reads all its lists.
+    owners = {}
+    for line in subprocess.run(["dpkg", "-S", *real, *(path.removeprefix("/usr") for path in real)], capture_output=True,
+                               text=True).stdout.splitlines():
+        package, path = line.split(": ", 1)
+        owners["/usr" + path.removeprefix("/usr")] = package.split(":")[0]
+    unknown = {path for path in real if "/usr" + path.removeprefix("/usr") not in owners}
+    if unknown:
+        raise AssertionError(f"no package has {unknown}")
+    return set(owners.values())
 
 
 class Containers(unittest.TestCase):
