@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <map>
+#include <thread>
 
 #include "film/atomic_file.h"
 #include "proto/log.h"
@@ -136,6 +137,17 @@ bool asked_to_end() {
   return sigtimedwait(&signals, nullptr, &now) > 0;
 }
 
+/// The folder of a leader that has just lost its lead is in its hands until it has noticed and ended.
+absl::StatusOr<StoreFolder> take_over_folder(const std::string& path) {
+  constexpr std::chrono::milliseconds kPause{100};
+  constexpr int kTries = 80;
+  for (int tries = 1;; ++tries) {
+    absl::StatusOr<StoreFolder> folder = StoreFolder::open(path);
+    if (folder.ok() || tries == kTries || asked_to_end()) return folder;
+    std::this_thread::sleep_for(kPause);
+  }
+}
+
 absl::Status serve(Options options) {
   if (!options.listen.credentials.token_file.empty()) {
     ASSIGN_OR_RETURN(options.listen.tokens, read_token_file(options.listen.credentials.token_file));
@@ -147,7 +159,8 @@ absl::Status serve(Options options) {
   if (!options.database.empty()) {
     ASSIGN_OR_RETURN(store, open_postgres_store(options.database, durability, asked_to_end));
   }
-  ASSIGN_OR_RETURN(const StoreFolder folder, StoreFolder::open(options.store));
+  ASSIGN_OR_RETURN(const StoreFolder folder,
+                   store == nullptr ? StoreFolder::open(options.store) : take_over_folder(options.store));
   if (store == nullptr) {
     ASSIGN_OR_RETURN(store, open_sqlite_store(folder.database(), durability));
   }
