@@ -22,15 +22,16 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}));
 
   Chosen chosen;
-  for (const auto add : {add_render, add_submit, add_wait, add_watch, add_explain, add_log, add_cancel, add_jobs,
-                         add_fetch, add_inspect, add_compare, add_replay, add_gate, add_calibrate, add_converge,
-                         add_report})
+  for (const auto add :
+       {add_render, add_submit, add_wait, add_watch, add_explain, add_log, add_health, add_cancel, add_jobs,
+        add_fetch, add_inspect, add_compare, add_replay, add_gate, add_calibrate, add_converge, add_report})
     add(app, chosen);
   try {
     // CLI11 would only say that a command is missing.
     const auto named = [&](CLI::App* command) { return command->check_name(argv[1]); };
     if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(named).empty())
-      throw CLI::ParseError(std::string("there is no command '") + argv[1] + "'", CLI::ExitCodes::ExtrasError);
+      throw CLI::ParseError(std::string("there is no command '") + argv[1] + "'",
+                            CLI::ExitCodes::ExtrasError);
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {
     return app.exit(help);

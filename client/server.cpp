@@ -117,9 +117,12 @@ absl::StatusOr<std::vector<std::string>> Server::explain(const JobId& job, std::
   return std::vector<std::string>(response.reasons().begin(), response.reasons().end());
 }
 
-absl::StatusOr<std::vector<LogLine>> Server::log(const JobId& job, std::stop_token stop) {
+absl::StatusOr<std::vector<LogLine>> Server::log(const JobId& job, std::optional<uint64_t> tile,
+                                                 bool worker_lines, std::stop_token stop) {
   v1::LogRequest request;
   request.set_job(job);
+  if (tile) request.set_tile(*tile);
+  request.set_worker_lines(worker_lines);
   ASSIGN_OR_RETURN(const v1::LogResponse response,
                    parts_->unary(*parts_->render, &v1::Render::Stub::Log, request, stop));
   std::vector<LogLine> lines;

@@ -2,6 +2,7 @@
 // The server as the client sees it: one call, one function; retries inside.
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -43,8 +44,10 @@ class Server {
   absl::StatusOr<std::vector<JobStatus>> jobs(std::stop_token stop);
   absl::StatusOr<std::vector<std::string>> explain(const JobId& job, std::stop_token stop);
 
-  /// What became of a job's tasks, oldest first.
-  absl::StatusOr<std::vector<LogLine>> log(const JobId& job, std::stop_token stop);
+  /// What became of a job's tasks (or of one tile's), oldest first; with `worker_lines` also what workers
+  /// logged while they rendered.
+  absl::StatusOr<std::vector<LogLine>> log(const JobId& job, std::optional<uint64_t> tile, bool worker_lines,
+                                           std::stop_token stop);
 
   /// Follows a job to its end; each status is told to `each`, whose error ends the watching. The final
   /// status.

@@ -3,10 +3,10 @@ set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 step() { printf '\n==> %s\n' "$*"; }
 
-# Installs what deploy/packages.txt lists and is not there yet.
+# install_packages [LIST…]: installs what deploy/packages.txt and further lists name and is not there yet.
 install_packages() {
   local missing=() package
-  for package in $(grep -v '^#' "$root/deploy/packages.txt"); do
+  for package in $(grep -hv '^#' "$root/deploy/packages.txt" "$@"); do
     dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || missing+=("$package")
   done
   if [ ${#missing[@]} = 0 ]; then

@@ -58,6 +58,8 @@ absl::StatusOr<CompletedTask> from_proto(const v1::SyncRequest::Completed& messa
     return invalid_input("completed.result: '{:.80}' is not a digest", message.result());
   task.result = message.result();
   ASSIGN_OR_RETURN(task.costs, list_from_proto<MixCost>("completed.costs", message.costs()));
+  RETURN_IF_ERROR(check_text("completed.log", message.log()));
+  task.log = message.log();
   return task;
 }
 
@@ -67,6 +69,8 @@ absl::StatusOr<FailedTask> from_proto(const v1::SyncRequest::Failed& message) {
   ASSIGN_OR_RETURN(task.reason, from_proto(message.reason()));
   RETURN_IF_ERROR(check_text("failed.message", message.message()));
   task.message = message.message();
+  RETURN_IF_ERROR(check_text("failed.log", message.log()));
+  task.log = message.log();
   return task;
 }
 
@@ -93,12 +97,14 @@ static void add_reports(const WorkerState& state, v1::SyncRequest& out) {
     *added->mutable_lease() = to_proto(task.lease);
     added->set_result(task.result);
     for (const MixCost& cost : task.costs) *added->add_costs() = to_proto(cost);
+    added->set_log(task.log);
   }
   for (const FailedTask& task : state.failed) {
     v1::SyncRequest::Failed* added = out.add_failed();
     *added->mutable_lease() = to_proto(task.lease);
     added->set_reason(to_proto(task.reason));
     added->set_message(task.message);
+    added->set_log(task.log);
   }
   for (const LoadedScene& scene : state.loaded) *out.add_loaded() = to_proto(scene);
 }

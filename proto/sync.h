@@ -30,6 +30,7 @@ struct CompletedTask {
   LeaseId lease;
   Digest result;  ///< blob of the serialised TileResult; empty for a pilot
   std::vector<MixCost> costs;
+  std::string log;  ///< what was logged while it was rendered, the tail
   bool operator==(const CompletedTask&) const = default;
 };
 
@@ -39,6 +40,7 @@ struct FailedTask {
   LeaseId lease;
   TaskFailure reason = TaskFailure::kError;
   std::string message;
+  std::string log;  ///< as CompletedTask::log
   bool operator==(const FailedTask&) const = default;
 };
 

@@ -19,11 +19,11 @@ struct JobHeader {
   JobState state = JobState::kQueued;
   FailureKind failure = FailureKind::kNone;
   std::string message;
-  std::vector<int64_t> passes;       ///< planned, per mix; empty until then
-  std::vector<AutoPlan> auto_plans;  ///< planned with `passes`, one for each automatic mix
+  std::vector<int64_t> passes;             ///< planned, per mix; empty until then
+  std::vector<AutoPlan> auto_plans;        ///< planned with `passes`, one for each automatic mix
   std::vector<EarlierPlan> earlier_plans;  ///< what was planned in the stages before
   std::vector<double> open_borders;        ///< where the plan will be looked at again (server/stages.h)
-  bool loaded = false;               ///< `load` and `substitutions` are known
+  bool loaded = false;                     ///< `load` and `substitutions` are known
   LoadReport load;
   std::vector<Substitution> substitutions;
   // Seconds since 1970; 0 until it has happened.
@@ -78,6 +78,13 @@ struct PutBlame {
   std::string who;  ///< identity of a reporter, or incarnation that died
   bool death = false;
 };
+/// What a worker logged of an attempt at a task. Never read by the scheduler.
+struct PutLog {
+  LeaseId lease;
+  std::string worker;  ///< host/name
+  double unix_time = 0;
+  std::string text;
+};
 /// A final job is forgotten with everything that belongs to it.
 struct DropJob {
   JobId job;
@@ -87,7 +94,8 @@ struct PutWorker {
   WorkerInfo worker;
 };
 
-using Change = std::variant<PutJob, PutLease, DropLease, PutResult, DropResult, PutBlame, DropJob, PutWorker>;
+using Change =
+    std::variant<PutJob, PutLease, DropLease, PutResult, DropResult, PutBlame, PutLog, DropJob, PutWorker>;
 
 /// A job as it comes back from a store.
 struct StoredJob {

@@ -88,6 +88,22 @@ uint64_t Coordinator::wait_for_change(uint64_t revision, double seconds) {
   return published_revision_;
 }
 
+absl::StatusOr<std::vector<PutLog>> Coordinator::worker_logs(const JobId& id, std::optional<uint64_t> tile,
+                                                             size_t most) {
+  using Logs = absl::StatusOr<std::vector<PutLog>>;
+  absl::StatusOr<Logs> logs = call([&](Scheduler& scheduler, const Now&) -> Logs {
+    const JobRecord* job = scheduler.find(id);
+    if (job == nullptr) return make_status(absl::StatusCode::kNotFound, "no job {}", id);
+    if (!tile) return store_->logs(id, 1, 0, most);
+    // Ids go round and round the tiles, the pilot's as the run's (server/planner.h).
+    if (*tile >= job->tiles().size())
+      return invalid_input("--tile: {} is not below {}, the number of tiles", *tile, job->tiles().size());
+    return store_->logs(id, job->tiles().size(), *tile, most);
+  });
+  if (!logs.ok()) return logs.status();
+  return *std::move(logs);
+}
+
 double Coordinator::next_deadline() const {
   const Now now = clock_();
   double next = now.steady + kMostSleepSeconds;
@@ -141,6 +157,14 @@ absl::Status Coordinator::commit() {
   return store_->apply(changes);
 }
 
+/// What the store does while nothing waits. Its troubles are its own, except that another server leads now.
+absl::Status Coordinator::rest() {
+  const absl::Status rested = store_->rest();
+  if (rested.ok() || absl::IsAborted(rested)) return rested;
+  spdlog::warn("{}", message_of(rested));
+  return absl::OkStatus();
+}
+
 void Coordinator::run() {
   for (bool stopping = false; !stopping && !failed_;) {
     const std::vector<Posted> batch = next_batch();
@@ -154,8 +178,10 @@ void Coordinator::run() {
       if (Finish finish = posted.work(scheduler_, now)) finished.push_back(std::move(finish));
     scheduler_.expire(now);
     answer_waiting(now, finished, stopping);
-    for (const std::string& notice : scheduler_.take_notices()) spdlog::info("{}", notice);
+    for (const Notice& notice : scheduler_.take_notices())
+      log_about(notice.detail ? spdlog::level::debug : spdlog::level::info, notice.about, notice.text);
     absl::Status durable = commit();
+    if (durable.ok() && batch.empty()) durable = rest();
     if (!durable.ok()) {
       spdlog::critical("the job store failed, the server ends: {}", message_of(durable));
       failed_ = true;
@@ -163,8 +189,6 @@ void Coordinator::run() {
       answer_waiting(now, finished, true);
     }
     for (const Finish& finish : finished) finish(durable);
-    if (batch.empty() && !failed_)
-      if (const absl::Status rested = store_->rest(); !rested.ok()) spdlog::warn("{}", message_of(rested));
     const std::lock_guard lock(mutex_);
     published_revision_ = scheduler_.revision();
     changed_.notify_all();

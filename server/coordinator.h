@@ -68,6 +68,10 @@ class Coordinator {
   /// Returns when anything has happened since `revision`, or after the timeout; gives the new revision.
   uint64_t wait_for_change(uint64_t revision, double seconds);
 
+  /// What workers logged of a job's tasks, or of one tile's: the latest `most` attempts, oldest first.
+  absl::StatusOr<std::vector<PutLog>> worker_logs(const JobId& job, std::optional<uint64_t> tile,
+                                                  size_t most);
+
   const BlobFolder& blobs() const { return blobs_; }
 
  private:
@@ -92,6 +96,7 @@ class Coordinator {
   double next_deadline() const;
   void answer_waiting(const Now& now, std::vector<Finish>& finished, bool all);
   absl::Status commit();
+  absl::Status rest();
 
   std::unique_ptr<JobStore> store_;
   BlobFolder blobs_;

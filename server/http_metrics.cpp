@@ -57,8 +57,10 @@ void jobs(const Snapshot& snapshot, Families& out) {
   for (size_t i = 0; i < states.size(); ++i)
     Families::set(family, {{"state", std::string(name_of(static_cast<JobState>(i)))}}, states[i]);
   out.gauge("penumbra_tasks_waiting",
-            "Tile tasks of unfinished jobs that no worker holds; what to scale workers by.", waiting);
+            "Tile tasks of unfinished jobs that no worker holds.", waiting);
   out.gauge("penumbra_tasks_leased", "Tile tasks that workers hold.", leased);
+  // Scaled by those that wait alone, workers would be taken away from what they render.
+  out.gauge("penumbra_tasks_unfinished", "The sum of these two: what to scale workers by.", waiting + leased);
   out.gauge("penumbra_lease_retries", "Leases given out again, summed over the jobs that the store holds.",
             retries);
   out.gauge("penumbra_render_cpu_seconds",

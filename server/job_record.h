@@ -60,6 +60,11 @@ class JobRecord {
     log.push_back(std::move(line));
   }
 
+  /// The tile that a task renders, as a place in tiles().
+  uint64_t tile_of(uint64_t task) const {
+    return (is_pilot(task) ? task : task - first_run_id_) % tiles_.size();
+  }
+
   const JobSpec& spec() const { return header.spec; }
   bool final() const { return is_final(header.state); }
   const std::vector<PixelRect>& tiles() const { return tiles_; }

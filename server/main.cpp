@@ -1,20 +1,22 @@
 // penumbra-server: flags, folders, services, signals.
 #include <malloc.h>
 #include <signal.h>
-#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <map>
+#include <thread>
 
 #include "film/atomic_file.h"
+#include "proto/log.h"
 #include "proto/status.h"
 #include "server/blobs_service.h"
 #include "server/coordinator.h"
 #include "server/http_pages.h"
 #include "server/listener.h"
+#include "server/postgres_store.h"
 #include "server/render_service.h"
 #include "server/retention.h"
 #include "server/sqlite_store.h"
@@ -31,7 +33,8 @@ struct Options {
   std::string store;
   std::string address_file;
   std::string http;
-  std::string log_level = "info";
+  std::string database;
+  std::string log_level = "info", log_format = "text";
   bool ephemeral = false;
   BlobLimits blobs;
   SchedulerLimits scheduler;
@@ -61,6 +64,10 @@ void add_flags(CLI::App& app, Options& options) {
       ->capture_default_str();
   app.add_option("--store", options.store, "folder for jobs, scenes and results; a restart continues from it")
       ->required();
+  app.add_option(
+      "--database", options.database,
+      "postgresql://HOST/NAME for jobs instead of a file in --store; of the servers with the same database "
+      "and --store one leads, the others stand by");
   app.add_flag("--ephemeral", options.ephemeral,
                "flush nothing to disk: for a store that need not survive the loss of power");
   app.add_option("--address-file", options.address_file, "file to write the bound HOST:PORT to");
@@ -94,6 +101,9 @@ void add_flags(CLI::App& app, Options& options) {
   app.add_option("--log-level", options.log_level, "trace, debug, info, warning, error or off")
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))
       ->capture_default_str();
+  app.add_option("--log-format", options.log_format, "text, or json: one object an event")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->capture_default_str();
   app.set_version_flag("--version", "penumbra-server " PENUMBRA_VERSION);
 }
 
@@ -117,14 +127,43 @@ void block_signals() {
   signal(SIGPIPE, SIG_IGN);
 }
 
+/// SIGTERM or SIGINT has come (and is consumed).
+bool asked_to_end() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  const timespec now{};
+  return sigtimedwait(&signals, nullptr, &now) > 0;
+}
+
+/// The folder of a leader that has just lost its lead is in its hands until it has noticed and ended.
+absl::StatusOr<StoreFolder> take_over_folder(const std::string& path) {
+  constexpr std::chrono::milliseconds kPause{100};
+  constexpr int kTries = 80;
+  for (int tries = 1;; ++tries) {
+    absl::StatusOr<StoreFolder> folder = StoreFolder::open(path);
+    if (folder.ok() || tries == kTries || asked_to_end()) return folder;
+    std::this_thread::sleep_for(kPause);
+  }
+}
+
 absl::Status serve(Options options) {
   if (!options.listen.credentials.token_file.empty()) {
     ASSIGN_OR_RETURN(options.listen.tokens, read_token_file(options.listen.credentials.token_file));
   }
   for (const TokenEntry& entry : options.listen.tokens) options.scheduler.quotas[entry.user] = entry.quota;
-  ASSIGN_OR_RETURN(const StoreFolder folder, StoreFolder::open(options.store));
   const Durability durability = options.ephemeral ? Durability::kProcessEnd : Durability::kPowerLoss;
-  ASSIGN_OR_RETURN(std::unique_ptr<JobStore> store, open_sqlite_store(folder.database(), durability));
+  std::unique_ptr<JobStore> store;
+  // Who stands by must not hold the folder that the leader works in.
+  if (!options.database.empty()) {
+    ASSIGN_OR_RETURN(store, open_postgres_store(options.database, durability, asked_to_end));
+  }
+  ASSIGN_OR_RETURN(const StoreFolder folder,
+                   store == nullptr ? StoreFolder::open(options.store) : take_over_folder(options.store));
+  if (store == nullptr) {
+    ASSIGN_OR_RETURN(store, open_sqlite_store(folder.database(), durability));
+  }
   ASSIGN_OR_RETURN(BlobFolder blobs, BlobFolder::open(folder.blobs(), durability));
   Coordinator coordinator(std::move(store), std::move(blobs), options.scheduler, now);
   RETURN_IF_ERROR(coordinator.start());
@@ -139,8 +178,9 @@ absl::Status serve(Options options) {
   if (!options.http.empty()) {
     ListenOptions http_options = options.listen;
     http_options.address = options.http;
-    ASSIGN_OR_RETURN(http, HttpServer::start(std::move(http_options),
-                                             [&](const HttpRequest& request) { return pages.answer(request); }));
+    ASSIGN_OR_RETURN(http, HttpServer::start(std::move(http_options), [&](const HttpRequest& request) {
+                       return pages.answer(request);
+                     }));
     spdlog::info("dashboard on {}", http.url());
   }
   if (!options.address_file.empty())
@@ -178,11 +218,10 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kBadUsage;
   }
-  spdlog::set_default_logger(spdlog::stderr_logger_mt("server"));
-  spdlog::set_level(spdlog::level::from_str(options.log_level));
+  start_log("server", options.log_level, options.log_format == "json" ? LogFormat::kJson : LogFormat::kText);
   block_signals();
   const absl::Status status = serve(options);
-  if (status.ok()) return 0;
+  if (status.ok() || absl::IsCancelled(status)) return 0;
   spdlog::error("{}", message_of(status));
   return absl::IsInvalidArgument(status) ? kBadUsage : kFailed;
 }

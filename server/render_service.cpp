@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <random>
+#include <sstream>
 
 #include "proto/convert.h"
 #include "proto/rpc_status.h"
@@ -75,6 +76,29 @@ template <class T>
 absl::StatusOr<T> flat(absl::StatusOr<absl::StatusOr<T>> nested) {
   if (!nested.ok()) return nested.status();
   return *std::move(nested);
+}
+
+// Of what workers logged: attempts that are read, and bytes that are sent, well below kMostMessageBytes.
+constexpr size_t kMostWorkerLogs = 10'000, kMostLogBytes = 8 << 20;
+
+/// A worker's text comes when its task has come to an end: its lines stand before what became of it.
+void add_worker_lines(const std::vector<PutLog>& logs, std::vector<LogLine>& lines) {
+  size_t first = logs.size();
+  for (size_t bytes = 0; first > 0; --first) {
+    // A line repeats the worker's name; few are shorter than 16 characters.
+    bytes += logs[first - 1].text.size() * (1 + logs[first - 1].worker.size() / 16);
+    if (bytes > kMostLogBytes) break;
+  }
+  std::vector<LogLine> all;
+  for (size_t i = first; i < logs.size(); ++i) {
+    std::istringstream in(logs[i].text);
+    for (std::string line; std::getline(in, line);)
+      all.push_back({logs[i].unix_time, logs[i].lease.task, logs[i].worker, "| " + line});
+  }
+  all.insert(all.end(), lines.begin(), lines.end());
+  std::stable_sort(all.begin(), all.end(),
+                   [](const LogLine& a, const LogLine& b) { return a.unix_seconds < b.unix_seconds; });
+  lines = std::move(all);
 }
 
 double thread_cpu_seconds() {
@@ -194,13 +218,23 @@ grpc::Status RenderService::Explain(grpc::ServerContext*, const v1::JobRequest* 
 
 grpc::Status RenderService::Log(grpc::ServerContext*, const v1::LogRequest* request,
                                 v1::LogResponse* response) {
-  const auto lines =
+  std::optional<uint64_t> tile;
+  if (request->has_tile()) tile = request->tile();
+  auto lines =
       flat(coordinator_.call([&](Scheduler& scheduler, const Now&) -> absl::StatusOr<std::vector<LogLine>> {
         const JobRecord* job = scheduler.find(request->job());
         if (job == nullptr) return no_job(request->job());
-        return std::vector<LogLine>(job->log.begin(), job->log.end());
+        std::vector<LogLine> kept(job->log.begin(), job->log.end());
+        if (tile)
+          std::erase_if(kept, [&](const LogLine& l) { return !l.task || job->tile_of(*l.task) != *tile; });
+        return kept;
       }));
   if (!lines.ok()) return to_grpc(lines.status());
+  if (request->worker_lines()) {
+    const auto logs = coordinator_.worker_logs(request->job(), tile, kMostWorkerLogs);
+    if (!logs.ok()) return to_grpc(logs.status());
+    add_worker_lines(*logs, *lines);
+  }
   for (const LogLine& line : *lines) *response->add_lines() = to_proto(line);
   return grpc::Status::OK;
 }

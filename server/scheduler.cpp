@@ -41,8 +41,21 @@ std::vector<Change> Scheduler::take_changes() {
 void Scheduler::note(JobRecord& job, std::optional<uint64_t> task, const std::string& worker,
                      const std::string& text, const Now& now) {
   job.append_log({now.unix_time, task, worker, text});
-  notices_.push_back(fmt::format("job={}{}{} {}", job.header.id, task ? fmt::format(" task={}", *task) : "",
-                                 worker.empty() ? "" : " worker=" + worker, text));
+  notices_.push_back({about(job, task, worker), text});
+}
+
+About Scheduler::about(const JobRecord& job, std::optional<uint64_t> task, const std::string& worker) const {
+  About out{job.header.id, task, std::nullopt, worker};
+  if (task) out.tile = job.tile_of(*task);
+  return out;
+}
+
+void Scheduler::keep_log(const LeaseId& lease, const WorkerRecord& worker, const std::string& text,
+                         const Now& now) {
+  constexpr size_t kMostBytes = 4096;
+  if (text.empty()) return;
+  put(PutLog{lease, worker.identity(), now.unix_time,
+             text.substr(text.size() - std::min(text.size(), kMostBytes))});
 }
 
 /// The job's counters, to be stored with whatever is stored next.
@@ -147,7 +160,7 @@ void Scheduler::forget(const JobId& id) {
   touched_.erase(id);
   jobs_.erase(id);
   put(DropJob{id});
-  notices_.push_back(fmt::format("job={} forgotten", id));
+  notices_.push_back({About{id, {}, {}, {}}, "forgotten"});
 }
 
 void Scheduler::lose_results(const JobId& id, const std::vector<std::pair<uint64_t, Digest>>& lost,
@@ -236,8 +249,10 @@ void Scheduler::complete(WorkerRecord& worker, const CompletedTask& done,
   worker.failures = 0;
   double seconds = 0;
   for (const MixCost& cost : done.costs) seconds += cost.cpu_seconds;
-  job.append_log(
-      {now.unix_time, done.lease.task, worker.identity(), fmt::format("done in {:.3g} CPU s", seconds)});
+  const std::string said = fmt::format("done in {:.3g} CPU s", seconds);
+  job.append_log({now.unix_time, done.lease.task, worker.identity(), said});
+  notices_.push_back({about(job, done.lease.task, worker.identity()), said, true});
+  keep_log(done.lease, worker, done.log, now);
   job.accept(done.lease.task, {done.result, done.costs, worker.info.id});
   put(PutResult{done.lease, done.result, done.costs, worker.info.id});
   if (task.kind == TaskKind::kRun) {
@@ -252,6 +267,7 @@ void Scheduler::fail(WorkerRecord& worker, const FailedTask& failed, const Now& 
   if (mine == worker.leases.end() || mine->second != failed.lease.epoch) return;
   JobRecord& job = *find_job(failed.lease.job);
   end_lease(worker, job, failed.lease.task);
+  keep_log(failed.lease, worker, failed.log, now);
   switch (failed.reason) {
     case TaskFailure::kReturned:
       ++count_fault(job).returned_leases;

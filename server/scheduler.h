@@ -18,6 +18,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "proto/log.h"
 #include "proto/run.h"
 #include "proto/sync.h"
 #include "server/changes.h"
@@ -46,6 +47,13 @@ struct SchedulerLimits {
 struct ResultShape {
   PixelRect rect;
   std::vector<int64_t> passes;  ///< per mix
+};
+
+/// What an operator may want to read of.
+struct Notice {
+  About about;
+  std::string text;
+  bool detail = false;  ///< as happens with every task
 };
 
 /// Answer to a Sync, and whether it says anything that is worth sending before the worker's wait is over.
@@ -113,8 +121,8 @@ class Scheduler {
 
   /// Changes since the last call, in order.
   std::vector<Change> take_changes();
-  /// What an operator may want to read of, one line each, since the last call.
-  std::vector<std::string> take_notices() { return std::exchange(notices_, {}); }
+  /// Since the last call.
+  std::vector<Notice> take_notices() { return std::exchange(notices_, {}); }
   /// Grows whenever something happened that may interest a waiting worker or watcher.
   uint64_t revision() const { return revision_; }
 
@@ -157,6 +165,8 @@ class Scheduler {
   void put(Change change);
   void note(JobRecord& job, std::optional<uint64_t> task, const std::string& worker, const std::string& text,
             const Now& now);
+  About about(const JobRecord& job, std::optional<uint64_t> task, const std::string& worker) const;
+  void keep_log(const LeaseId& lease, const WorkerRecord& worker, const std::string& text, const Now& now);
   FaultCounts& count_fault(JobRecord& job);
 
   SchedulerLimits limits_;
@@ -169,7 +179,7 @@ class Scheduler {
   std::map<std::string, WorkerInfo> contributors_;
   std::vector<Change> changes_;
   std::set<JobId> touched_;  ///< headers to be stored with the next changes
-  std::vector<std::string> notices_;
+  std::vector<Notice> notices_;
   uint64_t revision_ = 0;
 };
 

@@ -20,8 +20,8 @@ void Scheduler::expire(const Now& now) {
   for (const auto& [id, worker] : workers_)
     if (now.steady - worker.last_seen >= limits_.silence_seconds) silent.push_back(id);
   for (const std::string& id : silent) {
-    notices_.push_back(
-        fmt::format("worker {} has been silent for {} s", workers_[id].identity(), limits_.silence_seconds));
+    notices_.push_back({About{{}, {}, {}, workers_[id].identity()},
+                        fmt::format("has been silent for {} s", limits_.silence_seconds)});
     end_worker(id, now);
   }
   expire_tasks(now);
@@ -93,7 +93,7 @@ absl::StatusOr<WorkerRecord*> Scheduler::meet(const WorkerState& state, const No
   const Identity identity{state.worker.host, state.name};
   if (const auto it = incarnations_.find(identity); it != incarnations_.end() && it->second != id) {
     const std::string old = it->second;
-    notices_.push_back(fmt::format("worker {}/{} has been started anew", state.worker.host, state.name));
+    notices_.push_back({About{{}, {}, {}, state.worker.host + "/" + state.name}, "has been started anew"});
     end_worker(old, now);
     retired_[old] = now.steady;
   }
@@ -145,7 +145,7 @@ void Scheduler::hold_back(WorkerRecord& worker, const JobId& job, const std::str
   if (worker.failed_jobs.size() < limits_.failed_jobs || !worker.set_aside.empty()) return;
   worker.set_aside = fmt::format("it failed tasks of {} jobs in a row; the last time: {}",
                                  worker.failed_jobs.size(), message);
-  notices_.push_back(fmt::format("worker {} is set aside: {}", worker.identity(), worker.set_aside));
+  notices_.push_back({About{{}, {}, {}, worker.identity()}, "is set aside: " + worker.set_aside});
 }
 
 }  // namespace penumbra

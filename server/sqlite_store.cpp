@@ -1,5 +1,6 @@
 #include "server/sqlite_store.h"
 
+#include <algorithm>
 #include <iterator>
 #include <map>
 
@@ -31,6 +32,11 @@ constexpr const char* kMigrations[] = {
     R"sql(
   CREATE TABLE blames (job TEXT NOT NULL, task INTEGER NOT NULL, who TEXT NOT NULL, death INTEGER NOT NULL,
     count INTEGER NOT NULL, PRIMARY KEY (job, task, who, death)) WITHOUT ROWID;
+)sql",
+    // What workers logged; when, in microseconds since 1970.
+    R"sql(
+  CREATE TABLE logs (job TEXT NOT NULL, task INTEGER NOT NULL, epoch INTEGER NOT NULL, worker TEXT NOT NULL,
+    time INTEGER NOT NULL, log TEXT NOT NULL, PRIMARY KEY (job, task, epoch)) WITHOUT ROWID;
 )sql",
 };
 constexpr uint64_t kSchema = std::size(kMigrations);
@@ -71,6 +77,7 @@ class SqliteStore final : public JobStore {
         },
         this);
     RETURN_IF_ERROR(make(drop_result_, "DELETE FROM results WHERE job = ? AND task = ?"));
+    RETURN_IF_ERROR(make(put_log_, "INSERT OR REPLACE INTO logs VALUES(?, ?, ?, ?, ?, ?)"));
     return make(put_worker_, "INSERT OR REPLACE INTO workers VALUES(?, ?)");
   }
 
@@ -86,6 +93,27 @@ class SqliteStore final : public JobStore {
     if (!status.ok()) sqlite3_exec(db_.get(), "ROLLBACK", nullptr, nullptr, nullptr);
     if (status.ok() && log_pages_ >= kMostPages) return checkpoint();
     return status;
+  }
+
+  absl::StatusOr<std::vector<PutLog>> logs(const JobId& job, uint64_t modulus, uint64_t remainder,
+                                           size_t most) override {
+    ASSIGN_OR_RETURN(
+        Statement row,
+        Statement::prepare(db_.get(),
+                           "SELECT task, epoch, worker, time, log FROM logs WHERE job = ? AND task % ? "
+                           "= ? ORDER BY time DESC LIMIT ?"));
+    row.bind(job).bind(modulus).bind(remainder).bind(most);
+    std::vector<PutLog> found;
+    for (;;) {
+      ASSIGN_OR_RETURN(const bool more, row.step());
+      if (!more) break;
+      found.push_back({{job, row.number(0), row.number(1)},
+                       row.text(2),
+                       1e-6 * static_cast<double>(row.number(3)),
+                       row.text(4)});
+    }
+    std::reverse(found.begin(), found.end());
+    return found;
   }
 
   absl::Status rest() override { return log_pages_ >= kCheckpointPages ? checkpoint() : absl::OkStatus(); }
@@ -159,6 +187,10 @@ class SqliteStore final : public JobStore {
   absl::Status write(const PutBlame& put) {
     return put_blame_->bind(put.job).bind(put.task).bind(put.who).bind(uint64_t{put.death}).run();
   }
+  absl::Status write(const PutLog& put) {
+    put_log_->bind(put.lease.job).bind(put.lease.task).bind(put.lease.epoch).bind(put.worker);
+    return put_log_->bind(static_cast<uint64_t>(1e6 * put.unix_time)).bind(put.text).run();
+  }
   absl::Status write(const DropJob& drop) {
     for (const auto& statement : drop_job_) RETURN_IF_ERROR(statement->bind(drop.job).run());
     return absl::OkStatus();
@@ -179,18 +211,19 @@ class SqliteStore final : public JobStore {
 
   static constexpr const char* kOfJobs[] = {
       "DELETE FROM jobs WHERE id = ?", "DELETE FROM leases WHERE job = ?",
-      "DELETE FROM results WHERE job = ?", "DELETE FROM blames WHERE job = ?"};
+      "DELETE FROM results WHERE job = ?", "DELETE FROM blames WHERE job = ?",
+      "DELETE FROM logs WHERE job = ?"};
   int log_pages_ = 0;
   Database db_;  // outlives the statements below
   std::unique_ptr<Statement> put_job_, put_lease_, drop_lease_, forget_lease_, put_result_, drop_result_,
-      put_blame_, put_worker_;
+      put_blame_, put_worker_, put_log_;
   std::unique_ptr<Statement> drop_job_[std::size(kOfJobs)];
 };
 
 absl::Status make_schema(sqlite3* db, Durability durability) {
   RETURN_IF_ERROR(execute(db, "PRAGMA journal_mode = WAL"));
-  RETURN_IF_ERROR(execute(db, durability == Durability::kPowerLoss ? "PRAGMA synchronous = FULL"
-                                                                   : "PRAGMA synchronous = OFF"));
+  RETURN_IF_ERROR(execute(
+      db, durability == Durability::kPowerLoss ? "PRAGMA synchronous = FULL" : "PRAGMA synchronous = OFF"));
   ASSIGN_OR_RETURN(Statement version, Statement::prepare(db, "PRAGMA user_version"));
   ASSIGN_OR_RETURN(const bool row, version.step());
   const uint64_t found = row ? version.number(0) : 0;

@@ -10,6 +10,7 @@
 #include "proto/convert.h"
 #include "proto/rpc_status.h"
 #include "worker/agent/identity.h"
+#include "worker/agent/log_capture.h"
 
 namespace penumbra {
 namespace {
@@ -38,6 +39,23 @@ TaskFailure failure_of(const absl::Status& status) {
   // The server's copy of the scene is gone or corrupt: no worker can do better.
   if (absl::IsDataLoss(status)) return TaskFailure::kLostInput;
   return TaskFailure::kError;
+}
+
+/// Passes, CPU seconds and what was refused, all mixes together.
+std::string rendered_text(const Assignment& assignment, const TaskOutcome& outcome) {
+  int64_t passes = 0;
+  double seconds = 0;
+  uint64_t refused = 0;
+  for (const MixCost& cost : outcome.costs) {
+    passes += cost.passes;
+    seconds += cost.cpu_seconds;
+    refused += cost.non_finite;
+  }
+  const PixelRect& tile = assignment.task.tile;
+  return fmt::format("{} [{},{})x[{},{}): {} passes in {:.3f} CPU s{}",
+                     assignment.task.kind == TaskKind::kPilot ? "pilot" : "rendered", tile.x0, tile.x1,
+                     tile.y0, tile.y1, passes, seconds,
+                     refused == 0 ? "" : fmt::format(", {} samples refused: not finite", refused));
 }
 
 }  // namespace
@@ -172,22 +190,32 @@ void Agent::pause(double seconds) {
 
 void Agent::render_loop() {
   while (const std::shared_ptr<Assignment> assignment = board_.take()) {
+    const LogCapture capture;
     absl::StatusOr<TaskOutcome> outcome = outcome_of(*assignment);
     if (assignment->cancel || (outcome.ok() && outcome->cancelled)) {
       board_.drop(*assignment);
     } else if (!outcome.ok()) {
-      spdlog::warn("job {} task {}: {}", assignment->lease.job, assignment->lease.task,
-                   message_of(outcome.status()));
-      board_.fail(*assignment, failure_of(outcome.status()), message_of(outcome.status()));
+      log_about(spdlog::level::warn, about(assignment->lease), message_of(outcome.status()));
+      board_.fail(*assignment, failure_of(outcome.status()), message_of(outcome.status()), capture.text());
     } else {
-      hand_in(assignment, *std::move(outcome));
+      log_about(spdlog::level::debug, about(assignment->lease), rendered_text(*assignment, *outcome));
+      hand_in(assignment, *std::move(outcome), capture.text());
     }
   }
 }
 
+About Agent::about(const LeaseId& lease) const {
+  return {lease.job, lease.task, std::nullopt, options_.worker.host + "/" + options_.name};
+}
+
 absl::StatusOr<TaskOutcome> Agent::outcome_of(const Assignment& assignment) {
+  const double asked = steady_seconds();
   ASSIGN_OR_RETURN(const CachedScene cached,
                    scenes_.get(*assignment.job, [&] { return assignment.cancel || stopping_; }));
+  log_about(spdlog::level::debug, about(assignment.lease),
+            fmt::format("scene there after {:.3f} s; parsed in {:.3f} s, built in {:.3f} s, {} warnings",
+                        steady_seconds() - asked, cached.report.parse_seconds, cached.report.build_seconds,
+                        cached.report.warnings.size()));
   LoadedScene loaded{assignment.lease.job, cached.report, {}};
   for (size_t m = 0; m < assignment.job->mixes.size(); ++m)
     for (std::string& text : cached.scene->substitutions(assignment.job->mixes[m]))
@@ -202,10 +230,11 @@ absl::StatusOr<TaskOutcome> Agent::outcome_of(const Assignment& assignment) {
   }
 }
 
-void Agent::hand_in(const std::shared_ptr<Assignment>& assignment, TaskOutcome outcome) {
+void Agent::hand_in(const std::shared_ptr<Assignment>& assignment, TaskOutcome outcome, std::string log) {
   auto finished = std::make_shared<Finished>();
   finished->report.lease = assignment->lease;
   finished->report.costs = std::move(outcome.costs);
+  finished->report.log = std::move(log);
   if (assignment->task.kind == TaskKind::kPilot) {
     board_.complete(*assignment, std::move(finished));
     return;
@@ -239,8 +268,7 @@ void Agent::upload(const ToUpload& item) {
     // A server whose disk is full keeps what it has and takes more when there is room again.
     const bool full = absl::IsResourceExhausted(status);
     if (full && !std::exchange(told_full, true))
-      spdlog::warn("job {} task {}: {}; trying again", finished.report.lease.job, finished.report.lease.task,
-                   message_of(status));
+      log_about(spdlog::level::warn, about(finished.report.lease), message_of(status) + "; trying again");
     const bool again =
         full || absl::IsUnavailable(status) || absl::IsAborted(status) || absl::IsCancelled(status);
     const bool cancelled = item.assignment && item.assignment->cancel;
@@ -254,7 +282,8 @@ void Agent::upload(const ToUpload& item) {
       board_.complete(*item.assignment, item.finished);
       return;
     } else if (!again) {
-      board_.fail(*item.assignment, TaskFailure::kError, "uploading the result: " + message_of(status));
+      board_.fail(*item.assignment, TaskFailure::kError, "uploading the result: " + message_of(status),
+                  finished.report.log);
       return;
     }
     pause(kRetrySeconds);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "proto/blob_folder.h"
+#include "proto/log.h"
 #include "proto/worker.grpc.pb.h"
 #include "worker/agent/blob_client.h"
 #include "worker/agent/scene_cache.h"
@@ -36,6 +37,8 @@ class Agent {
   /// Finishes what is begun, hands back the rest, then ends. With `grace_seconds`: what is not done by then
   /// is cancelled and handed back too.
   void drain(std::optional<double> grace_seconds);
+  /// It holds no tile and has nothing to report.
+  bool idle() const { return board_.empty(); }
   /// True once the agent has ended by itself: drained, or refused by the server.
   bool ended() const { return ended_; }
   /// Ends the threads. OK, or why the server has refused this worker.
@@ -52,8 +55,9 @@ class Agent {
   bool take_answer(const absl::Status& status, const v1::SyncResponse& response, const WorkerState& told);
   bool drained();
   void render_loop();
+  About about(const LeaseId& lease) const;
   absl::StatusOr<TaskOutcome> outcome_of(const Assignment& assignment);
-  void hand_in(const std::shared_ptr<Assignment>& assignment, TaskOutcome outcome);
+  void hand_in(const std::shared_ptr<Assignment>& assignment, TaskOutcome outcome, std::string log);
   void upload_loop();
   void upload(const ToUpload& item);
   void pause(double seconds);

@@ -1,7 +1,6 @@
 #include "worker/agent/program.h"
 
 #include <signal.h>
-#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
 
@@ -12,10 +11,12 @@
 #include <thread>
 
 #include "proto/channel.h"
+#include "proto/log.h"
 #include "proto/status.h"
 #include "worker/agent/agent.h"
 #include "worker/agent/flags.h"
 #include "worker/agent/identity.h"
+#include "worker/agent/log_capture.h"
 
 namespace penumbra {
 namespace {
@@ -27,8 +28,8 @@ constexpr double kGraceSeconds = 3.5;
 struct Options {
   std::string server;
   int threads = 0;
-  std::string cache, name, max_memory, drain_after;
-  std::string log_level = "info";
+  std::string cache, name, max_memory, drain_after, drain_idle;
+  std::string log_level = "info", log_format = "text";
   Credentials credentials;
 };
 
@@ -43,12 +44,18 @@ void add_flags(CLI::App& app, Options& options) {
                  "which of the host's workers this is; default: the lowest number free in the cache folder");
   app.add_option("--max-memory", options.max_memory, "e.g. 8G; a scene that needs more fails its job");
   app.add_option("--drain-after", options.drain_after, "e.g. 50m; then take no new tiles, finish, and end");
+  app.add_option(
+      "--drain-idle", options.drain_idle,
+      "e.g. 60s; end after so long without a tile: for workers that a farm's scheduler starts on demand");
   app.add_option("--tls-cert", options.credentials.cert, "this worker's certificate, PEM");
   app.add_option("--tls-key", options.credentials.key, "its private key, PEM");
   app.add_option("--tls-ca", options.credentials.ca, "authority that the server's certificate must have");
   app.add_option("--token-file", options.credentials.token_file, "file with the token to send");
   app.add_option("--log-level", options.log_level, "trace, debug, info, warning, error or off")
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))
+      ->capture_default_str();
+  app.add_option("--log-format", options.log_format, "text, or json: one object an event")
+      ->check(CLI::IsMember({"text", "json"}))
       ->capture_default_str();
   app.set_version_flag("--version", "penumbra-worker " PENUMBRA_VERSION);
 }
@@ -79,31 +86,51 @@ void block_signals(sigset_t& signals) {
   signal(SIGPIPE, SIG_IGN);
 }
 
+/// When a worker goes by itself; seconds.
+struct Leaving {
+  std::optional<double> after;  ///< since its start
+  std::optional<double> idle;   ///< since it last held a tile
+};
+
+absl::StatusOr<Leaving> leaving_of(const Options& options) {
+  Leaving leaving;
+  if (!options.drain_after.empty()) {
+    ASSIGN_OR_RETURN(leaving.after, parse_duration_flag("--drain-after", options.drain_after));
+  }
+  if (!options.drain_idle.empty()) {
+    ASSIGN_OR_RETURN(leaving.idle, parse_duration_flag("--drain-idle", options.drain_idle));
+  }
+  return leaving;
+}
+
 /// Until the agent has ended by itself, been asked to, or come to its time.
-void supervise(Agent& agent, std::optional<double> drain_after, const sigset_t& signals) {
-  const auto start = std::chrono::steady_clock::now();
+void supervise(Agent& agent, Leaving leaving, const sigset_t& signals) {
+  using Clock = std::chrono::steady_clock;
+  const auto since = [](Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  };
+  const auto start = Clock::now();
+  auto last_busy = start;
   const timespec slice{0, 100'000'000};
   while (!agent.ended()) {
     if (sigtimedwait(&signals, nullptr, &slice) > 0) {
       spdlog::info("draining: asked to stop");
       agent.drain(kGraceSeconds);
+      leaving = {};
     }
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-    if (drain_after && elapsed.count() >= *drain_after) {
-      spdlog::info("draining: --drain-after has passed");
-      agent.drain(std::nullopt);
-      drain_after.reset();
-    }
+    if (!agent.idle()) last_busy = Clock::now();
+    const bool time_is_up = leaving.after && since(start) >= *leaving.after;
+    if (!time_is_up && !(leaving.idle && since(last_busy) >= *leaving.idle)) continue;
+    spdlog::info("draining: {} has passed", time_is_up ? "--drain-after" : "--drain-idle");
+    agent.drain(std::nullopt);
+    leaving = {};
   }
 }
 
 absl::Status work(const Options& options, const SceneLoader& loader) {
   sigset_t signals;
   block_signals(signals);
-  std::optional<double> drain_after;
-  if (!options.drain_after.empty()) {
-    ASSIGN_OR_RETURN(drain_after, parse_duration_flag("--drain-after", options.drain_after));
-  }
+  ASSIGN_OR_RETURN(const Leaving leaving, leaving_of(options));
   RETURN_IF_ERROR(limit_memory(options.max_memory));
   ASSIGN_OR_RETURN(const std::string folder, cache_folder(options.cache));
   ASSIGN_OR_RETURN(BlobFolder cache, BlobFolder::open(folder));
@@ -124,7 +151,7 @@ absl::Status work(const Options& options, const SceneLoader& loader) {
                agent_options.threads, options.server);
   Agent agent(std::move(agent_options), channel, std::move(cache), loader);
   agent.start();
-  supervise(agent, drain_after, signals);
+  supervise(agent, leaving, signals);
   return agent.stop();
 }
 
@@ -139,8 +166,8 @@ int run_worker(int argc, char** argv, const SceneLoader& loader) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kBadUsage;
   }
-  spdlog::set_default_logger(spdlog::stderr_logger_mt("worker"));
-  spdlog::set_level(spdlog::level::from_str(options.log_level));
+  start_log("worker", options.log_level, options.log_format == "json" ? LogFormat::kJson : LogFormat::kText,
+            {make_capture_sink()});
   const absl::Status status = work(options, loader);
   if (status.ok()) return 0;
   spdlog::error("{}", message_of(status));

@@ -116,10 +116,10 @@ void TaskBoard::complete(const Assignment& assignment, std::shared_ptr<Finished>
   news_cv_.notify_all();
 }
 
-void TaskBoard::fail(const Assignment& assignment, TaskFailure reason, std::string message) {
+void TaskBoard::fail(const Assignment& assignment, TaskFailure reason, std::string message, std::string log) {
   const std::lock_guard lock(mutex_);
   held_.erase(assignment.lease);
-  failed_[assignment.lease] = {assignment.lease, reason, std::move(message)};
+  failed_[assignment.lease] = {assignment.lease, reason, std::move(message), std::move(log)};
   news_ = true;
   news_cv_.notify_all();
 }
@@ -141,7 +141,7 @@ void TaskBoard::loaded(const LoadedScene& scene) {
 
 void TaskBoard::hand_back(const LeaseId& lease, std::string message) {
   held_.erase(lease);
-  failed_[lease] = {lease, TaskFailure::kReturned, std::move(message)};
+  failed_[lease] = {lease, TaskFailure::kReturned, std::move(message), {}};
 }
 
 void TaskBoard::drain() {

@@ -56,7 +56,7 @@ class TaskBoard {
   std::shared_ptr<Assignment> take();
   /// Rendered and, for a run task, uploaded.
   void complete(const Assignment& assignment, std::shared_ptr<Finished> finished);
-  void fail(const Assignment& assignment, TaskFailure reason, std::string message);
+  void fail(const Assignment& assignment, TaskFailure reason, std::string message, std::string log);
   /// The task was cancelled: nothing to report.
   void drop(const Assignment& assignment);
   /// Once per job; later calls do nothing.

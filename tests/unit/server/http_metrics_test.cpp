@@ -36,7 +36,7 @@ TEST(Metrics, CountJobsTasksAndWorkers) {
   const std::string text = metrics_text(snapshot);
   for (const char* line :
        {"penumbra_jobs{state=\"running\"} 1", "penumbra_jobs{state=\"failed\"} 0",
-        "penumbra_tasks_waiting 12", "penumbra_tasks_leased 2", "penumbra_render_cpu_seconds 7.5",
+        "penumbra_tasks_waiting 12", "penumbra_tasks_leased 2", "penumbra_tasks_unfinished 14", "penumbra_render_cpu_seconds 7.5",
         "penumbra_workers 1", "penumbra_workers_draining 1", "penumbra_worker_threads 8",
         "penumbra_worker_leases{host=\"node1\",worker=\"w0\"} 2",
         "penumbra_worker_silence_seconds{host=\"node1\",worker=\"w0\"} 1.5", "# TYPE penumbra_jobs gauge",

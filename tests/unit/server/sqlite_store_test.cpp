@@ -85,6 +85,30 @@ TEST_F(SqliteStoreTest, WhatIsAppliedComesBack) {
   EXPECT_EQ(state->workers.size(), 1u);
 }
 
+TEST_F(SqliteStoreTest, LogsAreKeptByTileUntilTheirJobGoes) {
+  const auto log = [](uint64_t task, uint64_t epoch, double time) {
+    return PutLog{{"j1", task, epoch}, "h/n", time, fmt::format("task {} epoch {}", task, epoch)};
+  };
+  ASSERT_TRUE(
+      open()->apply({PutJob{header()}, log(0, 1, 10.5), log(1, 1, 11), log(3, 1, 12), log(0, 2, 13)}).ok());
+  const auto store = open();
+  const auto texts = [&](uint64_t modulus, uint64_t remainder, size_t most) {
+    std::vector<std::string> out;
+    for (const PutLog& kept : *store->logs("j1", modulus, remainder, most)) out.push_back(kept.text);
+    return out;
+  };
+  using Texts = std::vector<std::string>;
+  EXPECT_EQ(texts(1, 0, 9), (Texts{"task 0 epoch 1", "task 1 epoch 1", "task 3 epoch 1", "task 0 epoch 2"}));
+  EXPECT_EQ(texts(1, 0, 2), (Texts{"task 3 epoch 1", "task 0 epoch 2"})) << "the latest";
+  EXPECT_EQ(texts(3, 0, 9), (Texts{"task 0 epoch 1", "task 3 epoch 1", "task 0 epoch 2"})) << "of one tile";
+  const auto first = store->logs("j1", 3, 0, 9);
+  EXPECT_EQ(first->front().worker, "h/n");
+  EXPECT_EQ(first->front().unix_time, 10.5);
+  EXPECT_EQ(first->front().lease, (LeaseId{"j1", 0, 1}));
+  ASSERT_TRUE(store->apply({DropJob{"j1"}}).ok());
+  EXPECT_EQ(texts(1, 0, 9), Texts{});
+}
+
 TEST_F(SqliteStoreTest, ABatchIsAllOrNothing) {
   const auto store = open();
   const PutResult result{{"j1", 0, 1}, "", {}, "w"};
