@@ -50,6 +50,7 @@ absl::StatusOr<ScenePtr> RenderSceneBuilder::build() {
   scene_->description.camera_placement = description_.camera_placement;
   scene_->description.materials = description_.materials;
   RETURN_IF_ERROR(Camera::build(description_, 1, 1).status());
+  ASSIGN_OR_RETURN(scene_->effects, build_effects(description_));
   ASSIGN_OR_RETURN(scene_->materials, Materials::build(description_, files_, options_.strict, warnings_));
   ASSIGN_OR_RETURN(scene_->filter, Filter::build(description_, warnings_));
   used_textures_ = scene_->materials.used_textures();

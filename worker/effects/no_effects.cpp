@@ -1,0 +1,10 @@
+// The registry of a build without effects (CMake's PENUMBRA_EFFECTS=OFF): what bench_needs compares with.
+#include "worker/effects/effects.h"
+
+namespace penumbra {
+
+absl::StatusOr<Effects> build_effects(const SceneDescription&) {
+  return Effects();
+}
+
+}  // namespace penumbra
