@@ -69,7 +69,7 @@ struct Effect {
 constexpr Effect kEffects[] = {
     {"lens", "a pinhole instead", false},
     {"motion", "everything stands as when the shutter opens", false},
-    {"media", "vacuum instead", false},
+    {"media", "vacuum instead", true},
 };
 
 void add_effects(const SceneDescription& scene, std::vector<std::string>& out) {

@@ -94,7 +94,8 @@ class DensityGrid::Walk {
   double distance(double a, double b, double target) const { return current_.distance(o_, d_, a, b, target); }
 
  private:
-  /// To the box: in the lattice it runs from half a cell before the first sample to half a cell past the last.
+  /// To the box: in the lattice it runs from half a cell before the first sample to half a cell past the
+  /// last.
   void clip(int i) {
     const double lo = -0.5, hi = grid_.n_[i] - 0.5;
     if (d_[i] == 0) {
@@ -187,8 +188,12 @@ struct Distance {
 
 }  // namespace
 
-double density_at(const Density& density, const Vec3d& p) { return std::visit(At{p}, density); }
-double column(const Density& density, const MediumRay& ray) { return std::visit(Column{ray}, density); }
+double density_at(const Density& density, const Vec3d& p) {
+  return std::visit(At{p}, density);
+}
+double column(const Density& density, const MediumRay& ray) {
+  return std::visit(Column{ray}, density);
+}
 double distance_at(const Density& density, const MediumRay& ray, double column) {
   return std::visit(Distance{ray, column}, density);
 }

@@ -1,7 +1,8 @@
 #pragma once
-// How much of a medium there is along a ray: everywhere the same, or on a grid. A medium's coefficients are per
-// unit of density; its optical depth is coefficient × column, where the column is the integral of the density.
-// Exact to rounding in both kinds: no random numbers, so transmittance has no variance and needs no majorant.
+// How much of a medium there is along a ray: everywhere the same, or on a grid. A medium's coefficients are
+// per unit of density; its optical depth is coefficient × column, where the column is the integral of the
+// density. Exact to rounding in both kinds: no random numbers, so transmittance has no variance and needs no
+// majorant.
 #include <cstdint>
 #include <memory>
 #include <variant>

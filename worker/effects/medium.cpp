@@ -59,8 +59,10 @@ Equiangular::Equiangular(const MediumRay& ray, const Vec3d& pivot) : t0_(ray.t0)
   first_ = ray.t0 - to_pivot.dot(ray.d);
   height_ = to_pivot.cross(ray.d).length();
   // The angle from (first, height) to (last, height) by cross and dot: short parts keep their digits.
-  if (std::isinf(t1_)) angle_ = std::atan2(height_, first_);
-  else angle_ = std::atan2(height_ * (t1_ - t0_), height_ * height_ + first_ * (first_ + (t1_ - t0_)));
+  if (std::isinf(t1_))
+    angle_ = std::atan2(height_, first_);
+  else
+    angle_ = std::atan2(height_ * (t1_ - t0_), height_ * height_ + first_ * (first_ + (t1_ - t0_)));
 }
 
 double Equiangular::sample(double u) const {

@@ -1,6 +1,7 @@
 #pragma once
-// One participating medium: coefficients per length, density, phase function; and where along a ray it scatters.
-#include <optional>
+// One participating medium: coefficients per length, density, phase function; and where along a ray it
+// scatters.
+#include <memory>
 #include <string>
 
 #include "absl/status/statusor.h"
@@ -12,7 +13,8 @@
 namespace penumbra {
 
 struct Medium {
-  Vec3d sigma_t{0, 0, 0}, sigma_s{0, 0, 0};  ///< extinction and scattering at density 1, length⁻¹, per channel
+  Vec3d sigma_t{0, 0, 0},
+      sigma_s{0, 0, 0};  ///< extinction and scattering at density 1, length⁻¹, per channel
   HenyeyGreenstein phase;
   Density density;
 
@@ -29,8 +31,8 @@ struct ScatterPoint {
   double density = 0;  ///< there
 };
 
-/// Distances in proportion to what is scattered of light that comes from the ray's t0: density × transmittance,
-/// all within [t0,t1]. Every channel that scatters has an equal share. Made once per ray.
+/// Distances in proportion to what is scattered of light that comes from the ray's t0: density ×
+/// transmittance, all within [t0,t1]. Every channel that scatters has an equal share. Made once per ray.
 class FreeFlight {
  public:
   FreeFlight(const Medium& medium, const MediumRay& ray);
@@ -51,7 +53,8 @@ class FreeFlight {
   int channels_ = 0;  ///< that scatter
 };
 
-/// Distances uniform in the angle at a pivot (Kulla & Fajardo 2012): in proportion to 1/r², r the distance to it.
+/// Distances uniform in the angle at a pivot (Kulla & Fajardo 2012): in proportion to 1/r², r the distance to
+/// it.
 class Equiangular {
  public:
   Equiangular(const MediumRay& ray, const Vec3d& pivot);
@@ -70,7 +73,9 @@ class Equiangular {
 
 /// From `MakeNamedMedium`. A kind that is not supported is a named warning and nothing; InvalidArgument
 /// (`file:line:column: …`) for coefficients below 0, |g| ≥ 1, a grid that does not have its numbers.
-absl::StatusOr<std::optional<Medium>> build_medium(const MediumEntity& entity, const SceneDescription& description,
-                                                   const SceneFiles& files, std::vector<std::string>& warnings);
+absl::StatusOr<std::unique_ptr<Medium>> build_medium(const MediumEntity& entity,
+                                                   const SceneDescription& description,
+                                                   const SceneFiles& files,
+                                                   std::vector<std::string>& warnings);
 
 }  // namespace penumbra

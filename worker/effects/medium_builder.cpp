@@ -14,17 +14,18 @@ class MediumBuilder {
                 std::vector<std::string>& warnings)
       : entity_(entity), description_(description), files_(files), warnings_(warnings) {}
 
-  absl::StatusOr<std::optional<Medium>> build() {
+  absl::StatusOr<std::unique_ptr<Medium>> build() {
     const bool grid = entity_.type == "heterogeneous" || entity_.type == "uniformgrid";
     if (!grid && entity_.type != "homogeneous") {
-      warn(fmt::format("medium '{}' of type '{}' is not supported: vacuum instead", entity_.name, entity_.type));
-      return std::nullopt;
+      warn(fmt::format("medium '{}' of type '{}' is not supported: vacuum instead", entity_.name,
+                       entity_.type));
+      return nullptr;
     }
-    Medium medium;
-    RETURN_IF_ERROR(coefficients(medium));
-    RETURN_IF_ERROR(asymmetry(medium));
+    auto medium = std::make_unique<Medium>();
+    RETURN_IF_ERROR(coefficients(*medium));
+    RETURN_IF_ERROR(asymmetry(*medium));
     if (grid) {
-      ASSIGN_OR_RETURN(medium.density, density());
+      ASSIGN_OR_RETURN(medium->density, density());
     }
     return medium;
   }
@@ -43,11 +44,13 @@ class MediumBuilder {
         warn(fmt::format("medium '{}': emission ({}) is not rendered", entity_.name, name));
     // pbrt's coefficients where none are given: v4's uniform grid has 1, every other medium a fruit juice's.
     const bool ones = entity_.type == "uniformgrid";
-    Vec3d sigma_a = ones ? Vec3d(1) : Vec3d(.0011, .0024, .014), sigma_s = ones ? Vec3d(1) : Vec3d(2.55, 3.21, 3.77);
+    Vec3d sigma_a = ones ? Vec3d(1) : Vec3d(.0011, .0024, .014),
+          sigma_s = ones ? Vec3d(1) : Vec3d(2.55, 3.21, 3.77);
     RETURN_IF_ERROR(coefficient("sigma_a", sigma_a));
     RETURN_IF_ERROR(coefficient("sigma_s", sigma_s));
     const double scale = params.number("scale", 1);
-    if (!(scale >= 0)) return invalid_input("{}: scale {} of medium '{}' is below 0", at(), scale, entity_.name);
+    if (!(scale >= 0))
+      return invalid_input("{}: scale {} of medium '{}' is below 0", at(), scale, entity_.name);
     medium.sigma_s = sigma_s * scale;
     medium.sigma_t = (sigma_a + sigma_s) * scale;
     return absl::OkStatus();
@@ -72,7 +75,8 @@ class MediumBuilder {
   absl::Status asymmetry(Medium& medium) {
     medium.phase.g = entity_.params.number("g", 0);
     if (std::abs(medium.phase.g) < 1) return absl::OkStatus();
-    return invalid_input("{}: g {} of medium '{}' must lie between -1 and 1", at(), medium.phase.g, entity_.name);
+    return invalid_input("{}: g {} of medium '{}' must lie between -1 and 1", at(), medium.phase.g,
+                         entity_.name);
   }
 
   absl::StatusOr<Density> density() {
@@ -82,12 +86,13 @@ class MediumBuilder {
     constexpr int64_t kLongest = int64_t{1} << 20;
     for (const int64_t i : n)
       if (i < 1 || i > kLongest)
-        return invalid_input("{}: medium '{}' has a grid of {} x {} x {}", at(), entity_.name, n[0], n[1], n[2]);
+        return invalid_input("{}: medium '{}' has a grid of {} x {} x {}", at(), entity_.name, n[0], n[1],
+                             n[2]);
     const Param* given = params.find("density");
     const size_t values = given == nullptr ? 0 : given->numbers.size();
     if (values != size_t(n[0] * n[1] * n[2]))
-      return invalid_input("{}: medium '{}' has {} densities for a grid of {} x {} x {}", at(), entity_.name, values,
-                           n[0], n[1], n[2]);
+      return invalid_input("{}: medium '{}' has {} densities for a grid of {} x {} x {}", at(), entity_.name,
+                           values, n[0], n[1], n[2]);
     std::vector<float> density(given->numbers.begin(), given->numbers.end());
     for (const float d : density)
       if (!(d >= 0 && std::isfinite(d)))
@@ -100,7 +105,8 @@ class MediumBuilder {
   absl::StatusOr<Vec3d> corner(const char* name, const Vec3d& fallback) const {
     const Param* param = entity_.params.find(name);
     if (param == nullptr) return fallback;
-    if (param->numbers.size() != 3) return invalid_input("{}: {} needs 3 numbers", description_.place(param->loc), name);
+    if (param->numbers.size() != 3)
+      return invalid_input("{}: {} needs 3 numbers", description_.place(param->loc), name);
     return Vec3d(param->numbers[0], param->numbers[1], param->numbers[2]);
   }
 
@@ -124,8 +130,10 @@ class MediumBuilder {
 
 }  // namespace
 
-absl::StatusOr<std::optional<Medium>> build_medium(const MediumEntity& entity, const SceneDescription& description,
-                                                   const SceneFiles& files, std::vector<std::string>& warnings) {
+absl::StatusOr<std::unique_ptr<Medium>> build_medium(const MediumEntity& entity,
+                                                   const SceneDescription& description,
+                                                   const SceneFiles& files,
+                                                   std::vector<std::string>& warnings) {
   return MediumBuilder(entity, description, files, warnings).build();
 }
 

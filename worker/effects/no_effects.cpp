@@ -7,4 +7,10 @@ absl::StatusOr<Effects> build_effects(const SceneDescription&) {
   return Effects();
 }
 
+absl::StatusOr<std::shared_ptr<const MediumStage>> build_media(const SceneDescription&, const SceneFiles&,
+                                                               std::span<const ShapeEntity* const>, int,
+                                                               std::vector<std::string>&) {
+  return nullptr;
+}
+
 }  // namespace penumbra

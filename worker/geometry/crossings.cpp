@@ -26,7 +26,9 @@ void collect(const RTCFilterFunctionNArguments* arguments) {
   const auto* hit = reinterpret_cast<const RTCHit*>(arguments->hit);
   const Vec3f normal(hit->Ng_x, hit->Ng_y, hit->Ng_z), direction(ray->dir_x, ray->dir_y, ray->dir_z);
   auto* collecting = reinterpret_cast<Collecting*>(arguments->context);
-  collecting->out->push_back({ray->tfar, hit->geomID, normal.dot(direction) < 0});
+  const float along = normal.dot(direction),
+              cosine = std::abs(along) / (normal.length() * direction.length());
+  collecting->out->push_back({ray->tfar, hit->geomID, cosine, along < 0});
   arguments->valid[0] = 0;
 }
 
@@ -56,8 +58,8 @@ absl::StatusOr<CrossingScene> CrossingScene::build(std::span<const TriangleMesh>
   for (uint32_t m = 0; m < meshes.size(); ++m) {
     const TriangleMesh& mesh = meshes[m];
     RTCGeometry geometry = rtcNewGeometry(parts.device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    void* positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3f),
-                                              mesh.positions.size());
+    void* positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                              sizeof(Vec3f), mesh.positions.size());
     void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                             3 * sizeof(uint32_t), mesh.triangles());
     if (positions != nullptr && indices != nullptr) {
@@ -91,7 +93,8 @@ void CrossingScene::crossings(const Ray& ray, std::vector<Crossing>& out) const 
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(parts_->scene, &collecting.context, &query);
-  std::sort(out.begin(), out.end(), [](const Crossing& a, const Crossing& b) { return a.distance < b.distance; });
+  std::sort(out.begin(), out.end(),
+            [](const Crossing& a, const Crossing& b) { return a.distance < b.distance; });
 }
 
 }  // namespace penumbra

@@ -13,6 +13,7 @@ namespace penumbra {
 struct Crossing {
   float distance = 0;  ///< along the ray, in lengths of its direction
   uint32_t mesh = 0;
+  float cosine = 0;  ///< between the ray and the surface's normal, not negative
   /// The ray comes from the side from which the vertices go round counterclockwise.
   bool from_front = false;
 };
@@ -25,8 +26,8 @@ class CrossingScene {
   CrossingScene& operator=(CrossingScene&&) noexcept;
   ~CrossingScene();
 
-  /// All crossings in (near, far], by distance; an edge between two triangles may count once or twice. `out` is
-  /// replaced.
+  /// All crossings in (near, far], by distance; an edge between two triangles may count once or twice. `out`
+  /// is replaced.
   void crossings(const Ray& ray, std::vector<Crossing>& out) const;
 
  private:

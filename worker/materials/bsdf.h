@@ -26,8 +26,8 @@ class Bsdf final : public Scattering {
   Rgb f(const Vec3f& wo, const Vec3f& wi) const;
   /// f × cosine.
   Rgb scatter(const Vec3f& wo, const Vec3f& wi) const override { return f(wo, wi) * std::abs(wi.dot(ns_)); }
-  /// The part of f that is constant (Lambert's lobes) where light is reflected or, else, transmitted; the rest of
-  /// f; whether there is no rest. For integrals in closed form.
+  /// The part of f that is constant (Lambert's lobes) where light is reflected or, else, transmitted; the
+  /// rest of f; whether there is no rest. For integrals in closed form.
   Rgb lambertian(bool reflected) const;
   Rgb f_beyond_lambertian(const Vec3f& wo, const Vec3f& wi) const;
   bool only_lambertian() const;

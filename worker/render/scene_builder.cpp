@@ -57,6 +57,7 @@ absl::StatusOr<ScenePtr> RenderSceneBuilder::build() {
   used_textures_.resize(description_.textures.size());
   RETURN_IF_ERROR(place_shapes());
   RETURN_IF_ERROR(place_objects());
+  ASSIGN_OR_RETURN(scene_->effects.media, build_media(description_, files_, shapes_, options_.threads, warnings_));
   RETURN_IF_ERROR(build_textures());
   RETURN_IF_ERROR(add_lights());
   RETURN_IF_ERROR(build_geometry());
@@ -97,6 +98,7 @@ absl::Status RenderSceneBuilder::place_shape(const ShapeEntity& shape, bool in_o
   }
   if (!in_object) scene_->triangles += int64_t(placed.mesh.triangles());
   scene_->meshes.push_back(std::move(placed));
+  shapes_.push_back(&shape);
   visible_.push_back(visible);
   alpha_.push_back(alpha);
   return absl::OkStatus();

@@ -25,7 +25,8 @@ double expected_count(const PreparedMix::Slot& slot, double draws) {
 /// plane is a quotient of n · (p0 - x), whose rounding (of the vertices, of n as a cross product, of the sum)
 /// is a few units of the last place of the largest length in it: coordinates of the light, distance to x.
 Vec3f end_on_light(const LightPoint& at, const Vec3d& x) {
-  const double largest = std::max({std::abs(at.p.x), std::abs(at.p.y), std::abs(at.p.z)}) + (x - at.p).length();
+  const double largest =
+      std::max({std::abs(at.p.x), std::abs(at.p.y), std::abs(at.p.z)}) + (x - at.p).length();
   const double rounding = 16 * std::numeric_limits<float>::epsilon() * largest;
   const double side = at.n.dot(x - at.p) < 0 ? -1 : 1;
   return Vec3f(at.p + at.n * (side * rounding));
@@ -295,7 +296,8 @@ void DirectLight::densities(const Task& task, Candidate& c, double* row) {
     if (!clear(task, c.sample)) c.f = Rgb(0);
   } else if (c.sight == Sight::kNoOpaque && scene_.geometry.has_alpha() && !is_black(c.f)) {
     const Vec3f end = end_on_light(c.sample.at, x);
-    if (scene_.geometry.occluded_by_alpha(task.view.point().origin(c.sample.wi), end, counters_)) c.f = Rgb(0);
+    if (scene_.geometry.occluded_by_alpha(task.view.point().origin(c.sample.wi), end, counters_))
+      c.f = Rgb(0);
   }
 }
 
@@ -306,7 +308,7 @@ void DirectLight::attenuate(const Task& task) {
     if (is_black(c.f)) continue;
     const double distance =
         task.view.is_area() ? (c.sample.at.p - x).length() : std::numeric_limits<double>::infinity();
-    c.f *= scene_.attenuation->transmittance(point, c.sample.wi, distance);
+    c.f *= scene_.attenuation->transmittance(point.origin(c.sample.wi), c.sample.wi, distance);
   }
 }
 
@@ -316,8 +318,10 @@ bool DirectLight::may_reach(const Task& task) {
   for (size_t s = 0; s < mix_.slots(); ++s) {
     const PreparedMix::Slot slot = task.slot(mix_, s);
     const int samples = slot.count * int(task.turns.size());
-    if (is_line(slot.strategy)) work.lines += samples;
-    else if (!is_bsdf(slot.strategy)) work.rays += samples;
+    if (is_line(slot.strategy))
+      work.lines += samples;
+    else if (!is_bsdf(slot.strategy))
+      work.rays += samples;
     work.region |= wants_region(slot.strategy);
   }
   if (!scene_.lights.shafts && !work.region) return true;
@@ -398,7 +402,7 @@ Rgb DirectLight::delta(const ShadingPoint& point, const DeltaEmitter& emitter) {
   const double distance = std::holds_alternative<DistantEmitter>(emitter)
                               ? std::numeric_limits<double>::infinity()
                               : double((light.end - point.above).length());
-  return f * scene_.attenuation->transmittance(point, light.wi, distance);
+  return f * scene_.attenuation->transmittance(point.origin(light.wi), light.wi, distance);
 }
 
 }  // namespace penumbra
