@@ -32,7 +32,7 @@ struct ScatterPoint {
 };
 
 /// Distances in proportion to what is scattered of light that comes from the ray's t0: density ×
-/// transmittance, all within [t0,t1]. Every channel that scatters has an equal share. Made once per ray.
+/// transmittance, all within [t0,t1]. Every channel that scatters has an equal share. Made once per ray; refers to the medium.
 class FreeFlight {
  public:
   FreeFlight(const Medium& medium, const MediumRay& ray);

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <limits>
 
+#include "proto/status.h"
 #include "scenes/parser.h"
 
 namespace penumbra {
@@ -172,7 +173,7 @@ TEST(Media, ValuesOutOfRangeAreErrorsWithTheirPlace) {
     return Scene("MakeNamedMedium \"m\" \"string type\" " + params + "\nWorldBegin\n").status.ToString();
   };
   EXPECT_THAT(message("\"homogeneous\" \"rgb sigma_a\" [ 1 -1 1 ]"),
-              HasSubstr("scene.pbrt:1:51: sigma_a of medium 'm' is -1"));
+              HasSubstr("scene.pbrt:1:49: sigma_a of medium 'm' is -1"));
   EXPECT_THAT(message("\"homogeneous\" \"float g\" 1"), HasSubstr("scene.pbrt:1:1: g 1 of medium 'm'"));
   EXPECT_THAT(message("\"homogeneous\" \"float scale\" -2"), HasSubstr("scale -2"));
   EXPECT_THAT(message("\"uniformgrid\" \"integer nx\" 2 \"float density\" [ 1 2 3 ]"),
