@@ -4,6 +4,7 @@
 #include "scenes/each_shape.h"
 #include "scenes/needs.h"
 #include "scenes/pbrt_names.h"
+#include "scenes/unsupported_media.h"
 
 namespace penumbra {
 namespace {
@@ -88,6 +89,7 @@ std::vector<std::string> unsupported(const SceneDescription& description) {
   add_entities(description, out);
   add_left_out(description, out);
   add_effects(description, out);
+  if (PENUMBRA_EFFECTS) add_unsupported_media(description, out);
   return out;
 }
 

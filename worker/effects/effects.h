@@ -29,7 +29,6 @@ absl::StatusOr<Effects> build_effects(const SceneDescription& description);
 absl::StatusOr<std::shared_ptr<const MediumStage>> build_media(const SceneDescription& description,
                                                                const SceneFiles& files,
                                                                std::span<const ShapeEntity* const> shapes,
-                                                               int threads,
-                                                               std::vector<std::string>& warnings);
+                                                               int threads);
 
 }  // namespace penumbra

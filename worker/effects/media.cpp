@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <set>
 
 #include "proto/status.h"
 #include "scenes/each_shape.h"
@@ -41,30 +40,26 @@ bool winds_against_normals(const TriangleMesh& mesh) {
 /// Names to indices, and what is collected on the way.
 class Builder {
  public:
-  Builder(const SceneDescription& description, const SceneFiles& files, std::vector<std::string>& warnings)
-      : description_(description), files_(files), warnings_(warnings) {}
+  Builder(const SceneDescription& description, const SceneFiles& files)
+      : description_(description), files_(files) {}
 
   absl::Status read_media(std::vector<Medium>& media) {
     for (const MediumEntity& entity : description_.media) {
-      ASSIGN_OR_RETURN(const std::unique_ptr<Medium> medium, build_medium(entity, description_, files_, warnings_));
+      ASSIGN_OR_RETURN(const std::unique_ptr<Medium> medium, build_medium(entity, description_, files_));
       index_[entity.name] = medium ? int(media.size()) : -1;  // the last of a name wins
       if (medium) media.push_back(std::move(*medium));
     }
     return absl::OkStatus();
   }
 
-  int index(const std::string& name, FileLoc loc) {
-    if (name.empty()) return -1;
+  /// A name that no medium has is vacuum; unsupported() says so.
+  int index(const std::string& name) const {
     const auto found = index_.find(name);
-    if (found != index_.end()) return found->second;
-    if (unknown_.insert(name).second)
-      warnings_.push_back(
-          fmt::format("{}: there is no medium '{}': vacuum instead", description_.place(loc), name));
-    return -1;
+    return found != index_.end() ? found->second : -1;
   }
 
   MediumSides sides(const ShapeEntity& shape) {
-    return {index(shape.inside_medium, shape.loc), index(shape.outside_medium, shape.loc)};
+    return {index(shape.inside_medium), index(shape.outside_medium)};
   }
 
   /// A shape that rays pass, where it parts two media.
@@ -92,20 +87,17 @@ class Builder {
  private:
   const SceneDescription& description_;
   const SceneFiles& files_;
-  std::vector<std::string>& warnings_;
   std::map<std::string, int> index_;
-  std::set<std::string> unknown_;
 };
 
 }  // namespace
 
 absl::StatusOr<Media> Media::build(const SceneDescription& description, const SceneFiles& files,
-                                   std::span<const ShapeEntity* const> shapes, int threads,
-                                   std::vector<std::string>& warnings) {
+                                   std::span<const ShapeEntity* const> shapes, int threads) {
   Media media;
-  Builder builder(description, files, warnings);
+  Builder builder(description, files);
   RETURN_IF_ERROR(builder.read_media(media.media_));
-  media.at_camera_ = builder.index(description.camera_medium, description.camera.loc);
+  media.at_camera_ = builder.index(description.camera_medium);
   for (const ShapeEntity* shape : shapes) media.surfaces_.push_back(builder.sides(*shape));
   for (const ShapeEntity& shape : description.shapes)
     RETURN_IF_ERROR(builder.add_boundary(shape, shape.placement.start));

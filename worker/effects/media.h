@@ -27,10 +27,9 @@ struct MediumPiece {
 /// Immutable, shared by threads.
 class Media {
  public:
-  /// `shapes`: one per mesh of the scene. A name that no MakeNamedMedium gives is a named warning and vacuum.
+  /// `shapes`: one per mesh of the scene. A name that no MakeNamedMedium gives is vacuum.
   static absl::StatusOr<Media> build(const SceneDescription& description, const SceneFiles& files,
-                                     std::span<const ShapeEntity* const> shapes, int threads,
-                                     std::vector<std::string>& warnings);
+                                     std::span<const ShapeEntity* const> shapes, int threads);
 
   int size() const { return int(media_.size()); }
   const Medium& medium(int index) const { return media_[size_t(index)]; }

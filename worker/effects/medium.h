@@ -32,7 +32,8 @@ struct ScatterPoint {
 };
 
 /// Distances in proportion to what is scattered of light that comes from the ray's t0: density ×
-/// transmittance, all within [t0,t1]. Every channel that scatters has an equal share. Made once per ray; refers to the medium.
+/// transmittance, all within [t0,t1]. Every channel that scatters has an equal share. Made once per ray;
+/// refers to the medium.
 class FreeFlight {
  public:
   FreeFlight(const Medium& medium, const MediumRay& ray);
@@ -71,11 +72,10 @@ class Equiangular {
   double angle_ = 0;   ///< between the directions to both ends
 };
 
-/// From `MakeNamedMedium`. A kind that is not supported is a named warning and nothing; InvalidArgument
+/// From `MakeNamedMedium`. Null: of a kind that is not supported (unsupported() says so); InvalidArgument
 /// (`file:line:column: …`) for coefficients below 0, |g| ≥ 1, a grid that does not have its numbers.
 absl::StatusOr<std::unique_ptr<Medium>> build_medium(const MediumEntity& entity,
-                                                   const SceneDescription& description,
-                                                   const SceneFiles& files,
-                                                   std::vector<std::string>& warnings);
+                                                     const SceneDescription& description,
+                                                     const SceneFiles& files);
 
 }  // namespace penumbra

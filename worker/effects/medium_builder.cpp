@@ -10,17 +10,12 @@ namespace {
 
 class MediumBuilder {
  public:
-  MediumBuilder(const MediumEntity& entity, const SceneDescription& description, const SceneFiles& files,
-                std::vector<std::string>& warnings)
-      : entity_(entity), description_(description), files_(files), warnings_(warnings) {}
+  MediumBuilder(const MediumEntity& entity, const SceneDescription& description, const SceneFiles& files)
+      : entity_(entity), description_(description), files_(files) {}
 
   absl::StatusOr<std::unique_ptr<Medium>> build() {
     const bool grid = entity_.type == "heterogeneous" || entity_.type == "uniformgrid";
-    if (!grid && entity_.type != "homogeneous") {
-      warn(fmt::format("medium '{}' of type '{}' is not supported: vacuum instead", entity_.name,
-                       entity_.type));
-      return nullptr;
-    }
+    if (!grid && entity_.type != "homogeneous") return nullptr;  // named by unsupported()
     auto medium = std::make_unique<Medium>();
     RETURN_IF_ERROR(coefficients(*medium));
     RETURN_IF_ERROR(asymmetry(*medium));
@@ -31,17 +26,10 @@ class MediumBuilder {
   }
 
  private:
-  void warn(const std::string& what) { warnings_.push_back(at() + ": " + what); }
   std::string at() const { return description_.place(entity_.loc); }
 
   absl::Status coefficients(Medium& medium) {
     const Params& params = entity_.params;
-    if (const Param* preset = params.find("preset"); preset != nullptr && !preset->strings.empty())
-      warn(fmt::format("medium '{}': preset '{}' is not known; sigma_a and sigma_s as if it were not there",
-                       entity_.name, preset->strings[0]));
-    for (const char* name : {"Le", "Le.r", "Le.g", "Le.b"})
-      if (params.find(name) != nullptr)
-        warn(fmt::format("medium '{}': emission ({}) is not rendered", entity_.name, name));
     // pbrt's coefficients where none are given: v4's uniform grid has 1, every other medium a fruit juice's.
     const bool ones = entity_.type == "uniformgrid";
     Vec3d sigma_a = ones ? Vec3d(1) : Vec3d(.0011, .0024, .014),
@@ -125,16 +113,14 @@ class MediumBuilder {
   const MediumEntity& entity_;
   const SceneDescription& description_;
   const SceneFiles& files_;
-  std::vector<std::string>& warnings_;
 };
 
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Medium>> build_medium(const MediumEntity& entity,
-                                                   const SceneDescription& description,
-                                                   const SceneFiles& files,
-                                                   std::vector<std::string>& warnings) {
-  return MediumBuilder(entity, description, files, warnings).build();
+                                                     const SceneDescription& description,
+                                                     const SceneFiles& files) {
+  return MediumBuilder(entity, description, files).build();
 }
 
 }  // namespace penumbra

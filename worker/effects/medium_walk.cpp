@@ -167,10 +167,9 @@ bool calls_for_media(const SceneDescription& description) {
 absl::StatusOr<std::shared_ptr<const MediumStage>> build_media(const SceneDescription& description,
                                                                const SceneFiles& files,
                                                                std::span<const ShapeEntity* const> shapes,
-                                                               int threads,
-                                                               std::vector<std::string>& warnings) {
+                                                               int threads) {
   if (!calls_for_media(description)) return nullptr;
-  ASSIGN_OR_RETURN(Media media, Media::build(description, files, shapes, threads, warnings));
+  ASSIGN_OR_RETURN(Media media, Media::build(description, files, shapes, threads));
   if (media.size() == 0) return nullptr;
   return std::make_shared<const Stage>(std::move(media));
 }

@@ -8,8 +8,7 @@ absl::StatusOr<Effects> build_effects(const SceneDescription&) {
 }
 
 absl::StatusOr<std::shared_ptr<const MediumStage>> build_media(const SceneDescription&, const SceneFiles&,
-                                                               std::span<const ShapeEntity* const>, int,
-                                                               std::vector<std::string>&) {
+                                                               std::span<const ShapeEntity* const>, int) {
   return nullptr;
 }
 

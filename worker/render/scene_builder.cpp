@@ -57,7 +57,7 @@ absl::StatusOr<ScenePtr> RenderSceneBuilder::build() {
   used_textures_.resize(description_.textures.size());
   RETURN_IF_ERROR(place_shapes());
   RETURN_IF_ERROR(place_objects());
-  ASSIGN_OR_RETURN(scene_->effects.media, build_media(description_, files_, shapes_, options_.threads, warnings_));
+  ASSIGN_OR_RETURN(scene_->effects.media, build_media(description_, files_, shapes_, options_.threads));
   RETURN_IF_ERROR(build_textures());
   RETURN_IF_ERROR(add_lights());
   RETURN_IF_ERROR(build_geometry());

@@ -50,7 +50,7 @@ class Scene {
     const FolderFiles files(folder_.string());
     const auto description = parse_scene("scene.pbrt", files);
     EXPECT_TRUE(description.ok()) << description.status();
-    auto built = Media::build(*description, files, {}, 1, warnings);
+    auto built = Media::build(*description, files, {}, 1);
     status = built.status();
     if (built.ok()) media = *std::move(built);
   }
@@ -73,7 +73,6 @@ class Scene {
 
   std::optional<Media> media;
   absl::Status status;
-  std::vector<std::string> warnings;
 
  private:
   std::filesystem::path folder_;
@@ -147,25 +146,14 @@ TEST(Media, ABoundaryThatTouchesASurfaceIsNotCrossedThere) {
               ElementsAre("a 0 0.3333", "vacuum"));
 }
 
-TEST(Media, NamesThatAreNotThere) {
+TEST(Media, NamesThatAreNotThereAreVacuum) {
   const Scene s(
       "MakeNamedMedium \"cloud\" \"string type\" \"nanovdb\"\nMediumInterface \"\" \"mist\"\nCamera "
       "\"perspective\"\nWorldBegin\n" +
       bounded(R"("cloud" "haze")", box(0, 1)));
+  ASSERT_TRUE(s.media);
   EXPECT_EQ(s.media->at_camera(), -1);
-  ASSERT_EQ(s.warnings.size(), 3u);
-  EXPECT_THAT(s.warnings[0], HasSubstr("scene.pbrt:1:1: medium 'cloud' of type 'nanovdb' is not supported"));
-  EXPECT_THAT(s.warnings[1], HasSubstr("scene.pbrt:3:1: there is no medium 'mist'"));
-  EXPECT_THAT(s.warnings[2], HasSubstr("there is no medium 'haze'"));
-}
-
-TEST(Media, WhatIsLeftOutIsNamed) {
-  const Scene s(
-      "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"string preset\" \"Skimmilk\" \"rgb Le\" [1 1 "
-      "1]\nWorldBegin\n");
-  ASSERT_EQ(s.warnings.size(), 2u);
-  EXPECT_THAT(s.warnings[0], HasSubstr("preset 'Skimmilk'"));
-  EXPECT_THAT(s.warnings[1], HasSubstr("emission (Le)"));
+  EXPECT_THAT(s.along_x(-1), ElementsAre("vacuum"));
 }
 
 TEST(Media, ValuesOutOfRangeAreErrorsWithTheirPlace) {
