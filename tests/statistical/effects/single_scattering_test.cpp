@@ -181,7 +181,7 @@ TEST(Media, FurnaceOfABallOfScatterers) {
     scene.replace(scene.find("MediumInterface \"\" \"m\""), 22, "");
     const double value = furnace(tau);
     const double reference[3] = {value, value, value};
-    expect_mean(scene, {"bsdf:2", "sa:2", "bsdf:1+line-sa@u:1"}, 64, reference, 0.005, 3e-4);
+    expect_mean(scene, {"bsdf:2", "sa:2", "bsdf:1+line-sa@u:1"}, 64, reference, 0.01, 3e-4);
     if (tau <= 1e-3) { EXPECT_NEAR(value, 1, 4 * tau * tau + 1e-12); }
   }
 }
