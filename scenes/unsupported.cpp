@@ -4,6 +4,7 @@
 #include "scenes/each_shape.h"
 #include "scenes/needs.h"
 #include "scenes/pbrt_names.h"
+#include "scenes/unsupported_media.h"
 
 namespace penumbra {
 namespace {
@@ -60,15 +61,25 @@ void add_left_out(const SceneDescription& scene, std::vector<std::string>& out) 
                                 type, tally.count));
 }
 
+/// An effect in worker/effects, or one that is to come there.
+struct Effect {
+  std::string_view name, instead;
+  bool rendered;  ///< by a build with PENUMBRA_EFFECTS
+};
+
+constexpr Effect kEffects[] = {
+    {"lens", "a pinhole instead", false},
+    {"motion", "everything stands as when the shutter opens", false},
+    {"media", "vacuum instead", true},
+};
+
 void add_effects(const SceneDescription& scene, std::vector<std::string>& out) {
-  static const std::map<std::string, std::string> kInstead = {
-      {"lens", "a pinhole instead"},
-      {"motion", "everything stands as when the shutter opens"},
-      {"media", "vacuum instead"},
-  };
   for (const Need& need : needs_of(scene))
-    if (const auto instead = kInstead.find(need.effect); instead != kInstead.end())
-      out.push_back(fmt::format("{} is not rendered yet: {} ({})", need.effect, instead->second, need.why));
+    for (const Effect& effect : kEffects) {
+      if (effect.name != need.effect || (effect.rendered && PENUMBRA_EFFECTS)) continue;
+      out.push_back(fmt::format("{} is not rendered {}: {} ({})", effect.name,
+                                effect.rendered ? "by this build" : "yet", effect.instead, need.why));
+    }
 }
 
 }  // namespace
@@ -78,6 +89,7 @@ std::vector<std::string> unsupported(const SceneDescription& description) {
   add_entities(description, out);
   add_left_out(description, out);
   add_effects(description, out);
+  if (PENUMBRA_EFFECTS) add_unsupported_media(description, out);
   return out;
 }
 

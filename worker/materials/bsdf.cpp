@@ -216,7 +216,7 @@ std::optional<BsdfSample> Bsdf::sample_specular(const Vec3f& wo, int index) cons
           if constexpr (kSmooth<decltype(lobe)>) {
             return std::nullopt;
           } else {
-            const auto direction = scatter(lobe, local_wo);
+            const auto direction = penumbra::scatter(lobe, local_wo);
             if (!direction) return std::nullopt;
             return BsdfSample{to_world(direction->wi), lobes_[i].scale * direction->f, 1, true};
           }

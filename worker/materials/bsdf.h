@@ -3,23 +3,18 @@
 // f is per solid angle and does not contain the cosine; all directions are unit, in world space, and
 // point away from the surface. pbrt-v3's conventions (geometric normal decides reflect or transmit).
 #include <array>
+#include <cmath>
 #include <optional>
 #include <variant>
 
 #include "scenes/math.h"
 #include "worker/geometry/surface_point.h"
 #include "worker/materials/lobes.h"
+#include "worker/materials/scattering.h"
 
 namespace penumbra {
 
-struct BsdfSample {
-  Vec3f wi;
-  Rgb f;           ///< for specular lobes: f such that the throughput is f * |cosθ| / pdf
-  double pdf = 0;  ///< sr⁻¹; for a specular lobe the discrete probability
-  bool specular = false;
-};
-
-class Bsdf {
+class Bsdf final : public Scattering {
  public:
   static constexpr int kMostLobes = 8;
 
@@ -29,15 +24,17 @@ class Bsdf {
 
   /// Sum of the non-specular lobes that serve this pair of directions.
   Rgb f(const Vec3f& wo, const Vec3f& wi) const;
-  /// The part of f that is constant (Lambert's lobes) where light is reflected or, else, transmitted; the rest of
-  /// f; whether there is no rest. For integrals in closed form.
+  /// f × cosine.
+  Rgb scatter(const Vec3f& wo, const Vec3f& wi) const override { return f(wo, wi) * std::abs(wi.dot(ns_)); }
+  /// The part of f that is constant (Lambert's lobes) where light is reflected or, else, transmitted; the
+  /// rest of f; whether there is no rest. For integrals in closed form.
   Rgb lambertian(bool reflected) const;
   Rgb f_beyond_lambertian(const Vec3f& wo, const Vec3f& wi) const;
   bool only_lambertian() const;
   /// Density of sample() over the non-specular lobes at wi, sr⁻¹. Zero where it cannot reach.
-  double pdf(const Vec3f& wo, const Vec3f& wi) const;
+  double pdf(const Vec3f& wo, const Vec3f& wi) const override;
   /// A direction from the non-specular lobes; empty if there is none or the sample failed.
-  std::optional<BsdfSample> sample(const Vec3f& wo, const Vec2d& u, double choice) const;
+  std::optional<BsdfSample> sample(const Vec3f& wo, const Vec2d& u, double choice) const override;
   /// The specular lobes one by one: index in [0, specular_count()).
   int specular_count() const { return specular_; }
   std::optional<BsdfSample> sample_specular(const Vec3f& wo, int index) const;

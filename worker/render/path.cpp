@@ -5,14 +5,21 @@
 #include <limits>
 
 #include "worker/render/surface.h"
+#include "worker/strategies/light_pivot.h"
 
 namespace penumbra {
 namespace {
 
-// select(depth, i): the specular choice.
-constexpr int kSpecularChoice = 0;
+// select(depth, i): the specular choice, which light media are looked through for.
+constexpr int kSpecularChoice = 0, kPivotLight = 1;
+// light(depth, …): a stream that is no light's and no strategy's.
+constexpr uint32_t kPivotStream = 0xfffffffe;
 
-float largest(const Rgb& c) { return std::max({c.x, c.y, c.z}); }
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+float largest(const Rgb& c) {
+  return std::max({c.x, c.y, c.z});
+}
 
 Ray first_ray(const CameraRay& ray) {
   return {ray.origin, ray.direction, 0, std::numeric_limits<float>::infinity()};
@@ -23,26 +30,55 @@ Ray first_ray(const CameraRay& ray) {
 Rgb PathTracer::radiance(const CameraRay& camera_ray, const PassSampler& sampler, bool emission) {
   Rgb sum(0), throughput(1);
   Ray ray = first_ray(camera_ray);
+  if (walk_) walk_->start();
   for (int depth = 0;; ++depth) {
     const auto hit = scene_.geometry->intersect(ray, counters_);
+    if (walk_) sum += scattered(ray, hit ? double(hit->distance) : kInfinity, sampler, depth, throughput);
     if (!hit) return sum + throughput * background(ray.direction);
     if (emission || depth > 0) sum += throughput * emitted(*hit, ray);
     const bool filters = scene_.footprints && depth == 0;
     const SurfacePoint surface = surface_at(scene_, *hit, ray.direction, filters ? &camera_ray : nullptr);
     const Bsdf bsdf = scene_.materials.shade(scene_.meshes[hit->id.mesh].material, surface, scene_.textures);
     const ShadingPoint point(surface, bsdf);
+    if (walk_) walk_->stand_on(hit->id.mesh, surface.ng);
     if (bsdf.has_non_specular()) sum += throughput * direct_.estimate(point, sampler, depth);
     if (depth + 1 >= max_depth_ || bsdf.specular_count() == 0) return sum;
     Vec3f direction;
     if (!bounce(point, sampler, depth, direction, throughput)) return sum;
     ray = {surface.offset(direction), direction, 0, std::numeric_limits<float>::infinity()};
+    if (walk_) walk_->leave(direction);
   }
 }
 
 Rgb PathTracer::emission(const CameraRay& camera_ray) {
   const Ray ray = first_ray(camera_ray);
   const auto hit = scene_.geometry->intersect(ray, counters_);
-  return hit ? emitted(*hit, ray) : Rgb(0);
+  if (!hit) return Rgb(0);
+  if (!walk_) return emitted(*hit, ray);
+  walk_->start();
+  return emitted(*hit, ray) * walk_->pass(ray, double(hit->distance), nullptr, vertices_);
+}
+
+Rgb PathTracer::scattered(const Ray& ray, double distance, const PassSampler& sampler, int depth,
+                          Rgb& throughput) {
+  const LightSet& lights = scene_.lights;
+  const double middle = 0.5 * std::min(distance, double(lights.reach()));
+  const auto pivot =
+      light_pivot(lights, Vec3d(ray.origin) + Vec3d(ray.direction) * middle,
+                  sampler.select(depth, kPivotLight), sampler.light(depth, kPivotStream, 0, 0, 1));
+  const ScatterDraw draw{sampler, depth, pivot};
+  vertices_.clear();
+  const Rgb left = walk_->pass(ray, distance, &draw, vertices_);
+  Rgb sum(0);
+  for (const ScatterVertex& vertex : vertices_) {
+    walk_->stand_at(vertex);
+    const ShadingPoint point(vertex.p, -ray.direction, *vertex.phase);
+    sum += vertex.weight * direct_.estimate(point, vertex.sampler, depth);
+  }
+  walk_->arrive();
+  sum *= throughput;
+  throughput *= left;
+  return sum;
 }
 
 Rgb PathTracer::emitted(const Hit& hit, const Ray& ray) const {
@@ -64,11 +100,11 @@ bool PathTracer::bounce(const ShadingPoint& point, const PassSampler& sampler, i
   std::array<float, Bsdf::kMostLobes> weights{};
   int n = 0;
   float total = 0;
-  for (int i = 0; i < point.bsdf.specular_count(); ++i) {
-    const auto s = point.bsdf.sample_specular(point.wo, i);
+  for (int i = 0; i < point.bsdf->specular_count(); ++i) {
+    const auto s = point.bsdf->sample_specular(point.wo, i);
     if (!s || !(s->pdf > 0)) continue;
     samples[size_t(n)] = *s;
-    weights[size_t(n)] = largest(s->f) * std::abs(s->wi.dot(point.bsdf.ns())) / float(s->pdf);
+    weights[size_t(n)] = largest(s->f) * std::abs(s->wi.dot(point.bsdf->ns())) / float(s->pdf);
     total += weights[size_t(n++)];
   }
   if (!(total > 0)) return false;
@@ -78,7 +114,7 @@ bool PathTracer::bounce(const ShadingPoint& point, const PassSampler& sampler, i
   const BsdfSample& s = samples[size_t(chosen)];
   if (!(weights[size_t(chosen)] > 0)) return false;
   direction = s.wi;
-  const float cosine = std::abs(s.wi.dot(point.bsdf.ns()));
+  const float cosine = std::abs(s.wi.dot(point.bsdf->ns()));
   throughput *= s.f * (cosine / float(s.pdf) * total / weights[size_t(chosen)]);
   return true;
 }

@@ -1,6 +1,7 @@
 #pragma once
 // Radiance along one camera ray: emission, direct light, and chains of specular bounces.
 #include "worker/render/camera.h"
+#include "worker/render/medium_stage.h"
 #include "worker/render/scene.h"
 #include "worker/strategies/direct_light.h"
 
@@ -11,7 +12,8 @@ class PathTracer {
   /// `max_depth`: vertices that get direct light; 1 follows no specular bounce.
   PathTracer(const Scene& scene, const PreparedMix& mix, int max_depth, QueryCounters& counters)
       : scene_(scene),
-        direct_({*scene.geometry, scene.lights}, mix, counters),
+        walk_(scene.effects.media ? scene.effects.media->walk() : nullptr),
+        direct_({*scene.geometry, scene.lights, walk_.get()}, mix, counters),
         max_depth_(max_depth),
         counters_(counters) {}
 
@@ -23,14 +25,20 @@ class PathTracer {
 
  private:
   Rgb emitted(const Hit& hit, const Ray& ray) const;
+  /// What media scatter towards the ray's origin from before `distance`; takes from the throughput what does
+  /// not pass them.
+  Rgb scattered(const Ray& ray, double distance, const PassSampler& sampler, int depth, Rgb& throughput);
   Rgb background(const Vec3f& direction) const;
   /// One specular lobe, drawn in proportion to its throughput; false where there is none.
-  bool bounce(const ShadingPoint& point, const PassSampler& sampler, int depth, Vec3f& direction, Rgb& throughput) const;
+  bool bounce(const ShadingPoint& point, const PassSampler& sampler, int depth, Vec3f& direction,
+              Rgb& throughput) const;
 
   const Scene& scene_;
+  std::unique_ptr<MediumWalk> walk_;  ///< null: no media
   DirectLight direct_;
   int max_depth_;
   QueryCounters& counters_;
+  std::vector<ScatterVertex> vertices_;
 };
 
 }  // namespace penumbra

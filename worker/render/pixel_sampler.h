@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "worker/render/camera.h"
+#include "worker/render/camera_stage.h"
 #include "worker/render/light_pixels.h"
 #include "worker/render/path.h"
 #include "worker/render/scene.h"
@@ -37,6 +38,7 @@ class PixelSampler {
         filter_(rendering.job.probe ? kCentreFilter : *rendering.scene.filter),
         index_(uint32_t(index)),
         group_(group),
+        stage_(rendering.scene.effects.camera.get()),
         prepared_(mix, rendering.scene.lights),
         tracer_(rendering.scene, prepared_, rendering.job.max_depth, counters_) {}
   PixelSampler(const PixelSampler&) = delete;  // the tracer refers to its neighbours
@@ -51,7 +53,7 @@ class PixelSampler {
     const FilterSample filter = filter_.sample(sampler.film());
     const Vec2d centre(x + 0.5, y + 0.5);
     const bool apart = rendering_.light_pixels[size_t(y - tile.y0) * size_t(tile.width()) + size_t(x - tile.x0)] != 0;
-    Rgb value = tracer_.radiance(ray(centre, filter), sampler, !apart) * float(filter.weight);
+    Rgb value = radiance(ray(centre, filter), sampler, !apart) * float(filter.weight);
     if (apart) value += emission(centre, sampler);
     return value;
   }
@@ -71,15 +73,34 @@ class PixelSampler {
     Rgb sum(0);
     for (int i = 0; i < kEmissionRays; ++i) {
       const FilterSample filter = filter_.sample(sampler.film(i, kEmissionRays));
-      sum += tracer_.emission(ray(centre, filter)) * float(filter.weight);
+      sum += emission(ray(centre, filter), {sampler, i, kEmissionRays}) * float(filter.weight);
     }
     return sum / float(kEmissionRays);
+  }
+
+  Rgb radiance(const CameraRay& pinhole, const PassSampler& sampler, bool emission) {
+    if (!stage_) return tracer_.radiance(pinhole, sampler, emission);
+    stage_->rays(pinhole, {sampler}, rays_);
+    Rgb sum(0);
+    for (size_t k = 0; k < rays_.size(); ++k)
+      sum += tracer_.radiance(rays_[k].ray, sampler.branch(int(k)), emission) * rays_[k].weight;
+    return sum;
+  }
+
+  Rgb emission(const CameraRay& pinhole, const CameraDraw& draw) {
+    if (!stage_) return tracer_.emission(pinhole);
+    stage_->rays(pinhole, draw, rays_);
+    Rgb sum(0);
+    for (const WeightedRay& seen : rays_) sum += tracer_.emission(seen.ray) * seen.weight;
+    return sum;
   }
 
   const Rendering& rendering_;
   const Filter& filter_;
   uint32_t index_;
   int64_t group_;
+  const CameraStage* stage_;  ///< null: a pinhole
+  std::vector<WeightedRay> rays_;
   PreparedMix prepared_;
   QueryCounters counters_;
   PathTracer tracer_;

@@ -5,6 +5,7 @@
 
 #include "proto/job.h"
 #include "scenes/mesh.h"
+#include "worker/effects/effects.h"
 #include "worker/geometry/geometry.h"
 #include "worker/materials/material.h"
 #include "worker/render/filter.h"
@@ -38,10 +39,10 @@ class Scene {
   Textures textures;
   Materials materials;
   LightSet lights;
+  Effects effects;
   std::optional<Filter> filter;
   bool footprints = false;        ///< some texture or bump map wants pixel footprints
   int64_t triangles = 0;          ///< instances counted as often as they are placed
-
 };
 
 }  // namespace penumbra

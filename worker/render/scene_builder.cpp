@@ -50,12 +50,14 @@ absl::StatusOr<ScenePtr> RenderSceneBuilder::build() {
   scene_->description.camera_placement = description_.camera_placement;
   scene_->description.materials = description_.materials;
   RETURN_IF_ERROR(Camera::build(description_, 1, 1).status());
+  ASSIGN_OR_RETURN(scene_->effects, build_effects(description_));
   ASSIGN_OR_RETURN(scene_->materials, Materials::build(description_, files_, options_.strict, warnings_));
   ASSIGN_OR_RETURN(scene_->filter, Filter::build(description_, warnings_));
   used_textures_ = scene_->materials.used_textures();
   used_textures_.resize(description_.textures.size());
   RETURN_IF_ERROR(place_shapes());
   RETURN_IF_ERROR(place_objects());
+  ASSIGN_OR_RETURN(scene_->effects.media, build_media(description_, files_, shapes_, options_.threads));
   RETURN_IF_ERROR(build_textures());
   RETURN_IF_ERROR(add_lights());
   RETURN_IF_ERROR(build_geometry());
@@ -96,6 +98,7 @@ absl::Status RenderSceneBuilder::place_shape(const ShapeEntity& shape, bool in_o
   }
   if (!in_object) scene_->triangles += int64_t(placed.mesh.triangles());
   scene_->meshes.push_back(std::move(placed));
+  shapes_.push_back(&shape);
   visible_.push_back(visible);
   alpha_.push_back(alpha);
   return absl::OkStatus();

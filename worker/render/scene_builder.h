@@ -28,6 +28,7 @@ class RenderSceneBuilder {
   const LoadOptions& options_;
   std::vector<std::string>& warnings_;
   ScenePtr scene_;
+  std::vector<const ShapeEntity*> shapes_;  ///< per mesh: what it was made from
   std::vector<bool> visible_;          ///< per mesh
   std::vector<FloatValue> alpha_;      ///< per mesh; constant 1: opaque
   std::vector<bool> used_textures_;

@@ -11,7 +11,7 @@ namespace {
 constexpr int64_t kMostSamples = (int64_t{1} << 32) - 1;
 
 // What a stream of numbers is for; part of its key.
-enum class Use : uint32_t { kFilm, kLens, kTime, kLight, kChoice, kSelect, kFilmAgain, kLine, kDraw };
+enum class Use : uint32_t { kFilm, kLens, kTime, kLight, kChoice, kSelect, kFilmAgain, kLine, kDraw, kLensAgain, kBranch };
 
 /// Key of one stream of a pixel and group. `a` and `b` number the streams of a use.
 uint64_t stream_key(uint64_t key, Use use, uint64_t a = 0, uint64_t b = 0) {
@@ -83,6 +83,14 @@ Vec2d PassSampler::film(int i, int n) const {
 }
 Vec2d PassSampler::lens() const {
   return square(stream_key(key_, Use::kLens), 0, 1);
+}
+Vec2d PassSampler::lens(int i, int n) const {
+  return square(stream_key(key_, Use::kLensAgain), i, n);
+}
+PassSampler PassSampler::branch(int i) const {
+  PassSampler own = *this;
+  if (i > 0) own.key_ = stream_key(key_, Use::kBranch, static_cast<uint64_t>(i));
+  return own;
 }
 double PassSampler::time() const {
   return segment(stream_key(key_, Use::kTime), 0, 1);

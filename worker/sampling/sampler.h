@@ -32,8 +32,13 @@ class PassSampler {
   /// Position i of n for what is looked at more often than the rest: stratified together, and over the passes
   /// of the group.
   Vec2d film(int i, int n) const;
+  /// The same for the lens.
   Vec2d lens() const;
+  Vec2d lens(int i, int n) const;
   double time() const;
+  /// Where a pass sends several rays: the numbers of all that happens along ray i. Those of ray 0 are this
+  /// sampler's own.
+  PassSampler branch(int i) const;
 
   /// Sample i of n of a strategy (`slot`: its place in the mix) for one light at path vertex `depth`.
   /// The n samples of a pass, and those of all passes of a group, are stratified together in 2D.

@@ -5,7 +5,7 @@
 namespace penumbra {
 
 double pdf(const BsdfStrategy&, const LightView& view, const LightSample& s) {
-  return view.point().bsdf.pdf(view.point().wo, s.wi);
+  return view.point().scattering.pdf(view.point().wo, s.wi);
 }
 
 }  // namespace penumbra

@@ -25,7 +25,8 @@ double expected_count(const PreparedMix::Slot& slot, double draws) {
 /// plane is a quotient of n · (p0 - x), whose rounding (of the vertices, of n as a cross product, of the sum)
 /// is a few units of the last place of the largest length in it: coordinates of the light, distance to x.
 Vec3f end_on_light(const LightPoint& at, const Vec3d& x) {
-  const double largest = std::max({std::abs(at.p.x), std::abs(at.p.y), std::abs(at.p.z)}) + (x - at.p).length();
+  const double largest =
+      std::max({std::abs(at.p.x), std::abs(at.p.y), std::abs(at.p.z)}) + (x - at.p).length();
   const double rounding = 16 * std::numeric_limits<float>::epsilon() * largest;
   const double side = at.n.dot(x - at.p) < 0 ? -1 : 1;
   return Vec3f(at.p + at.n * (side * rounding));
@@ -53,7 +54,7 @@ Rgb DirectLight::draw_lights(const ShadingPoint& point, const PassSampler& sampl
   constexpr int kDraws = LightSet::kMostAsked;
   const LightSet& lights = scene_.lights;
   const size_t extended = lights.area.size() + lights.environments.size();
-  const Receiver receiver{Vec3d(point.above), !point.transmits, Vec3d(point.normal)};
+  const Receiver receiver{Vec3d(point.above), point.has_horizon(), Vec3d(point.normal)};
   Rgb sum(0);
   drawn_.clear();
   for (int d = 0; d < kDraws; ++d) drawn_.push_back(lights.draw(receiver, sampler.draw(depth, d, kDraws)));
@@ -99,7 +100,7 @@ void DirectLight::trace_bsdf(const ShadingPoint& point, const PassSampler& sampl
     for (int i = 0; i < slot.count; ++i) {
       const Vec2d u = sampler.light(depth, kBsdfStream, int(s), i, slot.count);
       const auto scattered =
-          point.bsdf.sample(point.wo, u, sampler.choice(depth, kBsdfStream, int(s), i, slot.count));
+          point.scattering.sample(point.wo, u, sampler.choice(depth, kBsdfStream, int(s), i, slot.count));
       if (!scattered || !(scattered->pdf > 0)) continue;
       const Vec3f& wi = scattered->wi;
       const Ray ray{point.origin(wi), wi, 0, std::numeric_limits<float>::infinity()};
@@ -142,6 +143,7 @@ Rgb DirectLight::ask(const Task& task, const PassSampler& sampler, int depth) {
   }
   if (candidates_.empty()) return integrated_;
   resolve(task);
+  if (scene_.attenuation != nullptr) attenuate(task);
   return integrated_ + combine();
 }
 
@@ -197,7 +199,7 @@ void DirectLight::gather_lines(const Task& task, const PassSampler& sampler, int
     const PreparedMix::Slot slot = task.slot(mix_, s);
     if (!is_line(slot.strategy)) continue;
     const bool integrates = this->integrates(slot.strategy);
-    const bool samples = !integrates || !task.view.point().bsdf.only_lambertian();
+    const bool samples = !integrates || !task.view.point().bsdf->only_lambertian();
     for (const int turn : task.turns)
       for (int i = 0; i < slot.count; ++i, ++line) {
         const std::span<const Interval> visible = own_lines_.visible(line);
@@ -214,9 +216,10 @@ void DirectLight::gather_lines(const Task& task, const PassSampler& sampler, int
   }
 }
 
-/// Lines know nothing of alpha-tested meshes: where there are some, points must answer for all of the light.
+/// Lines know nothing of alpha-tested meshes, and their closed form nothing of what is lost on the way: where
+/// there are such, points must answer for all of the light.
 bool DirectLight::integrates(const Strategy& strategy) const {
-  return is_analytic(strategy) && !scene_.geometry.has_alpha();
+  return is_analytic(strategy) && !scene_.geometry.has_alpha() && scene_.attenuation == nullptr;
 }
 
 void DirectLight::push(const Task& task, const LightSample& sample, size_t slot, Sight sight, size_t line,
@@ -293,7 +296,19 @@ void DirectLight::densities(const Task& task, Candidate& c, double* row) {
     if (!clear(task, c.sample)) c.f = Rgb(0);
   } else if (c.sight == Sight::kNoOpaque && scene_.geometry.has_alpha() && !is_black(c.f)) {
     const Vec3f end = end_on_light(c.sample.at, x);
-    if (scene_.geometry.occluded_by_alpha(task.view.point().origin(c.sample.wi), end, counters_)) c.f = Rgb(0);
+    if (scene_.geometry.occluded_by_alpha(task.view.point().origin(c.sample.wi), end, counters_))
+      c.f = Rgb(0);
+  }
+}
+
+void DirectLight::attenuate(const Task& task) {
+  const ShadingPoint& point = task.view.point();
+  const Vec3d x = task.view.x();
+  for (Candidate& c : candidates_) {
+    if (is_black(c.f)) continue;
+    const double distance =
+        task.view.is_area() ? (c.sample.at.p - x).length() : std::numeric_limits<double>::infinity();
+    c.f *= scene_.attenuation->transmittance(point.origin(c.sample.wi), c.sample.wi, distance);
   }
 }
 
@@ -303,8 +318,10 @@ bool DirectLight::may_reach(const Task& task) {
   for (size_t s = 0; s < mix_.slots(); ++s) {
     const PreparedMix::Slot slot = task.slot(mix_, s);
     const int samples = slot.count * int(task.turns.size());
-    if (is_line(slot.strategy)) work.lines += samples;
-    else if (!is_bsdf(slot.strategy)) work.rays += samples;
+    if (is_line(slot.strategy))
+      work.lines += samples;
+    else if (!is_bsdf(slot.strategy))
+      work.rays += samples;
     work.region |= wants_region(slot.strategy);
   }
   if (!scene_.lights.shafts && !work.region) return true;
@@ -381,7 +398,11 @@ Rgb DirectLight::delta(const ShadingPoint& point, const DeltaEmitter& emitter) {
   if (is_black(light.irradiance)) return Rgb(0);
   const Rgb f = point.scatter(light.wi) * light.irradiance;
   if (is_black(f) || scene_.geometry.occluded(point.origin(light.wi), light.end, counters_)) return Rgb(0);
-  return f;
+  if (scene_.attenuation == nullptr) return f;
+  const double distance = std::holds_alternative<DistantEmitter>(emitter)
+                              ? std::numeric_limits<double>::infinity()
+                              : double((light.end - point.above).length());
+  return f * scene_.attenuation->transmittance(point.origin(light.wi), light.wi, distance);
 }
 
 }  // namespace penumbra

@@ -5,6 +5,7 @@
 
 #include "worker/geometry/geometry.h"
 #include "worker/sampling/sampler.h"
+#include "worker/strategies/attenuation.h"
 #include "worker/strategies/combination.h"
 #include "worker/strategies/light_set.h"
 #include "worker/strategies/light_sight.h"
@@ -19,6 +20,7 @@ namespace penumbra {
 struct Surroundings {
   const Geometry& geometry;
   const LightSet& lights;
+  const Attenuation* attenuation = nullptr;  ///< null: nothing but surfaces is in the way of light
 };
 
 /// Estimator of the direct light that a point scatters towards its viewer. Keeps scratch memory between
@@ -91,6 +93,8 @@ class DirectLight {
   /// drops candidates that nothing reaches.
   void resolve(const Task& task);
   void densities(const Task& task, Candidate& candidate, double* row);
+  /// Takes from every candidate what is lost on its way.
+  void attenuate(const Task& task);
   bool integrates(const Strategy& strategy) const;
   /// False: no sample of the light can count here.
   bool may_reach(const Task& task);

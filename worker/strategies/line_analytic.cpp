@@ -15,7 +15,7 @@ LightLine through(const LineAnalyticStrategy& strategy, const LightView&, const 
 
 Rgb closed_form(const LightView& view, const LightLine& line, std::span<const Interval> visible) {
   const ShadingPoint& point = view.point();
-  const Vec3d x = view.x(), normal(point.normal), ns(point.bsdf.ns());
+  const Vec3d x = view.x(), normal(point.normal), ns(point.bsdf->ns());
   // Visible intervals do not cross the horizon: their middle tells the side.
   double above = 0, below = 0;
   for (const Interval& part : visible) {
@@ -25,8 +25,8 @@ Rgb closed_form(const LightView& view, const LightLine& line, std::span<const In
   }
   // The density of the offset is scale × chord length.
   const double density = line.scale * line.along.length();
-  Rgb sum = point.bsdf.lambertian(true) * float(above / density);
-  if (below > 0) sum += point.bsdf.lambertian(false) * float(below / density);
+  Rgb sum = point.bsdf->lambertian(true) * float(above / density);
+  if (below > 0) sum += point.bsdf->lambertian(false) * float(below / density);
   return sum * view.area().radiance;
 }
 
