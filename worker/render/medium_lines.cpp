@@ -9,6 +9,14 @@ namespace {
 /// PassSampler::branch of what is drawn here.
 constexpr int kLineBranch = 1 << 21;
 
+/// Is it infinitely far away?
+bool is_far(const LightSet& lights, size_t light) {
+  if (light < lights.area.size()) return false;
+  const size_t behind = light - lights.area.size();
+  return behind < lights.environments.size() ||
+         std::holds_alternative<DistantEmitter>(lights.delta[behind - lights.environments.size()]);
+}
+
 LightSet far_lights(const Scene& scene) {
   LightSet far;
   far.environments = scene.lights.environments;
@@ -31,7 +39,7 @@ MediumLines::MediumLines(const Scene& scene, const PreparedMix& mix, MediumWalk*
                          QueryCounters& counters)
     : scene_(scene), count_(mix.samples()), walk_(*walk), counters_(counters) {
   for (size_t l = 0; l < scene.lights.size() && !far_; ++l)
-    if (scene.lights.is_far(l)) far_ = std::make_unique<Far>(scene, mix, walk, counters);
+    if (is_far(scene.lights, l)) far_ = std::make_unique<Far>(scene, mix, walk, counters);
 }
 
 double MediumLines::end(const Vec3f& origin) const {
@@ -55,7 +63,7 @@ Rgb MediumLines::estimate(const Ray& ray, double until, const PassSampler& sampl
   };
   if (!lights.draws()) {
     for (size_t l = 0; l < lights.size(); ++l)
-      if (!lights.is_far(l))
+      if (!is_far(lights, l))
         for (int i = 0; i < count_; ++i) ask(l, 1.0 / count_, i, count_);
     return sum;
   }
@@ -64,7 +72,7 @@ Rgb MediumLines::estimate(const Ray& ray, double until, const PassSampler& sampl
   const Receiver receiver{Vec3d(ray.origin) + Vec3d(ray.direction) * middle, false, Vec3d(0)};
   for (int d = 0; d < draws; ++d) {
     const DrawnLight drawn = lights.draw(receiver, numbers.draw(depth, d, draws));
-    if (drawn.probability > 0 && !lights.is_far(drawn.light))
+    if (drawn.probability > 0 && !is_far(lights, drawn.light))
       ask(drawn.light, 1 / (draws * drawn.probability), d, draws);
   }
   return sum;

@@ -45,10 +45,8 @@ class LightSet {
   DrawnLight draw(const Receiver& receiver, double u) const;
   double probability(const Receiver& receiver, size_t light) const;
 
-  /// Is it infinitely far away?
-  bool is_far(size_t light) const;
-
  private:
+  bool is_far(size_t light) const;
   /// Irradiance, at most, at the receiver by the far light.
   double far_irradiance(size_t light, const Receiver& receiver) const;
   double far_irradiance(const Receiver& receiver) const;
