@@ -61,6 +61,8 @@ class Equiangular {
   Equiangular(const MediumRay& ray, const Vec3d& pivot);
   /// A pivot on the ray's line, or a part of no length: no density.
   bool possible() const { return height_ > 0 && angle_ > 0; }
+  /// Of the ray at the pivot.
+  double angle() const { return angle_; }
   double sample(double u) const;
   /// Density of sample() at t in [t0,t1], per length.
   double pdf(double t) const;

@@ -1,4 +1,5 @@
 // The stage of render/medium_stage.h: single scattering and transmittance along paths and shadow segments.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -50,7 +51,13 @@ class Walk final : public MediumWalk {
   Rgb pass(const Ray& ray, double distance, const ScatterDraw* draw,
            std::vector<ScatterVertex>& out) override;
   void arrive() override { stand_in(end_); }
-  void stand_at(const ScatterVertex& vertex) override { stand_in(vertex.medium); }
+  std::span<const MediumPart> parts() const override { return parts_; }
+  Rgb scattering(size_t part, double t) const override;
+  void stand_in(int medium) override {
+    here_ = outside_ = inside_ = medium;
+    normal_ = Vec3f(0);
+    on_surface_ = false;
+  }
   void stand_on(uint32_t mesh, const Vec3f& ng) override;
   void leave(const Vec3f& direction) override {
     here_ = medium_towards(direction);
@@ -59,11 +66,6 @@ class Walk final : public MediumWalk {
   Rgb transmittance(const Vec3f& x, const Vec3f& wi, double distance) const override;
 
  private:
-  void stand_in(int medium) {
-    here_ = outside_ = inside_ = medium;
-    normal_ = Vec3f(0);
-    on_surface_ = false;
-  }
   int medium_towards(const Vec3f& direction) const { return direction.dot(normal_) < 0 ? inside_ : outside_; }
   /// Points of one piece to be lit, of light of which `before` is left at its start.
   void scatter(const Ray& ray, std::ptrdiff_t index, const Vec3d& before, const ScatterDraw& draw,
@@ -76,6 +78,9 @@ class Walk final : public MediumWalk {
   Vec3f normal_{0};                 ///< of that surface; 0 in a medium
   bool on_surface_ = false;
   std::vector<MediumPiece> pieces_;
+  Vec3d origin_{0}, direction_{0};  ///< of the last pass()
+  std::vector<MediumPart> parts_;
+  std::vector<Vec3d> before_;  ///< per part: the share of light that is left where it begins
   mutable std::vector<MediumPiece> shadow_pieces_;
   mutable std::vector<Crossing> crossings_;
 };
@@ -84,9 +89,17 @@ Rgb Walk::pass(const Ray& ray, double distance, const ScatterDraw* draw, std::ve
   const Media& media = shared_->media;
   end_ = media.pieces({ray.origin, ray.direction, distance, here_, on_surface_, std::isfinite(distance)},
                       crossings_, pieces_);
+  origin_ = Vec3d(ray.origin);
+  direction_ = Vec3d(ray.direction);
+  parts_.clear();
+  before_.clear();
   Vec3d left(1);
   for (const MediumPiece& piece : pieces_) {
     const Medium& medium = media.medium(piece.medium);
+    if (medium.scatters()) {
+      parts_.push_back({piece.t0, piece.t1, &shared_->phases[size_t(piece.medium)], piece.medium});
+      before_.push_back(left);
+    }
     if (draw != nullptr && medium.scatters()) scatter(ray, &piece - pieces_.data(), left, *draw, out);
     const MediumRay part{Vec3d(ray.origin), Vec3d(ray.direction), piece.t0, piece.t1};
     left *= penumbra::transmittance(medium, column(medium.density, part));
@@ -100,7 +113,12 @@ void Walk::scatter(const Ray& ray, std::ptrdiff_t index, const Vec3d& before, co
                    std::vector<ScatterVertex>& out) const {
   const MediumPiece& piece = pieces_[size_t(index)];
   const Medium& medium = shared_->media.medium(piece.medium);
-  const MediumRay part{Vec3d(ray.origin), Vec3d(ray.direction), piece.t0, piece.t1};
+  MediumRay part{Vec3d(ray.origin), Vec3d(ray.direction), piece.t0, draw.from};
+  Vec3d left = before;
+  if (part.t1 > part.t0) left *= penumbra::transmittance(medium, column(medium.density, part));
+  part.t0 = std::max(piece.t0, draw.from);
+  part.t1 = std::min(piece.t1, draw.until);
+  if (!(part.t0 < part.t1)) return;
   const FreeFlight flight(medium, part);
   if (!flight.possible()) return;
   const std::optional<Equiangular> angle =
@@ -114,11 +132,19 @@ void Walk::scatter(const Ray& ray, std::ptrdiff_t index, const Vec3d& before, co
     const double density = flight.pdf(at) + (by_angle ? angle->pdf(at.t) : 0);
     if (!(density > 0) || !(at.density > 0)) continue;
     const Vec3d weight =
-        before * penumbra::transmittance(medium, at.column) * medium.sigma_s * (at.density / density);
+        left * penumbra::transmittance(medium, at.column) * medium.sigma_s * (at.density / density);
     if (!(weight.x + weight.y + weight.z > 0)) continue;
     out.push_back({Vec3f(part.o + part.d * at.t), &shared_->phases[size_t(piece.medium)], to_rgb(weight),
                    numbers, piece.medium});
   }
+}
+
+Rgb Walk::scattering(size_t part, double t) const {
+  const Medium& medium = shared_->media.medium(parts_[part].medium);
+  const MediumRay way{origin_, direction_, parts_[part].t0, t};
+  const double density = density_at(medium.density, origin_ + direction_ * t);
+  return to_rgb(before_[part] * penumbra::transmittance(medium, column(medium.density, way)) *
+                medium.sigma_s * density);
 }
 
 void Walk::stand_on(uint32_t mesh, const Vec3f& ng) {

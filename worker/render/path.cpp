@@ -14,6 +14,8 @@ namespace {
 constexpr int kSpecularChoice = 0, kPivotLight = 1;
 // light(depth, …): a stream that is no light's and no strategy's.
 constexpr uint32_t kPivotStream = 0xfffffffe;
+// branch(i): what lights infinitely far away make media scatter, where the others do it by lines.
+constexpr int kFarBranch = 1 << 22;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -61,6 +63,16 @@ Rgb PathTracer::emission(const CameraRay& camera_ray) {
 
 Rgb PathTracer::scattered(const Ray& ray, double distance, const PassSampler& sampler, int depth,
                           Rgb& throughput) {
+  Rgb left(0);
+  const Rgb sum = throughput * (lines_ ? scattered_by_lines(ray, distance, sampler, depth, left)
+                                       : scattered_by_points(ray, distance, sampler, depth, left));
+  walk_->arrive();
+  throughput *= left;
+  return sum;
+}
+
+Rgb PathTracer::scattered_by_points(const Ray& ray, double distance, const PassSampler& sampler, int depth,
+                                    Rgb& left) {
   const LightSet& lights = scene_.lights;
   const double middle = 0.5 * std::min(distance, double(lights.reach()));
   const auto pivot =
@@ -68,16 +80,34 @@ Rgb PathTracer::scattered(const Ray& ray, double distance, const PassSampler& sa
                   sampler.select(depth, kPivotLight), sampler.light(depth, kPivotStream, 0, 0, 1));
   const ScatterDraw draw{sampler, depth, pivot};
   vertices_.clear();
-  const Rgb left = walk_->pass(ray, distance, &draw, vertices_);
+  left = walk_->pass(ray, distance, &draw, vertices_);
+  return lit(vertices_, ray, depth, direct_);
+}
+
+Rgb PathTracer::scattered_by_lines(const Ray& ray, double distance, const PassSampler& sampler, int depth,
+                                   Rgb& left) {
+  // A chord has an end: past it, which is far beyond all surfaces, and for lights infinitely far away,
+  // points.
+  const double until = std::min(distance, lines_->end(ray.origin));
+  const ScatterDraw before{sampler.branch(kFarBranch), depth, std::nullopt, 0, until};
+  const ScatterDraw beyond{sampler, depth, std::nullopt, until};
+  vertices_.clear();
+  far_vertices_.clear();
+  if (lines_->far() != nullptr) walk_->pass(ray, distance, &before, far_vertices_);
+  left = walk_->pass(ray, distance, until < distance ? &beyond : nullptr, vertices_);
+  Rgb sum = lines_->estimate(ray, until, sampler, depth) + lit(vertices_, ray, depth, direct_);
+  if (lines_->far() != nullptr) sum += lit(far_vertices_, ray, depth, *lines_->far());
+  return sum;
+}
+
+Rgb PathTracer::lit(const std::vector<ScatterVertex>& vertices, const Ray& ray, int depth,
+                    DirectLight& direct) {
   Rgb sum(0);
-  for (const ScatterVertex& vertex : vertices_) {
-    walk_->stand_at(vertex);
+  for (const ScatterVertex& vertex : vertices) {
+    walk_->stand_in(vertex.medium);
     const ShadingPoint point(vertex.p, -ray.direction, *vertex.phase);
-    sum += vertex.weight * direct_.estimate(point, vertex.sampler, depth);
+    sum += vertex.weight * direct.estimate(point, vertex.sampler, depth);
   }
-  walk_->arrive();
-  sum *= throughput;
-  throughput *= left;
   return sum;
 }
 

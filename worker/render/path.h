@@ -1,7 +1,7 @@
 #pragma once
 // Radiance along one camera ray: emission, direct light, and chains of specular bounces.
 #include "worker/render/camera.h"
-#include "worker/render/medium_stage.h"
+#include "worker/render/medium_lines.h"
 #include "worker/render/scene.h"
 #include "worker/strategies/direct_light.h"
 
@@ -15,7 +15,9 @@ class PathTracer {
         walk_(scene.effects.media ? scene.effects.media->walk() : nullptr),
         direct_({*scene.geometry, scene.lights, walk_.get()}, mix, counters),
         max_depth_(max_depth),
-        counters_(counters) {}
+        counters_(counters) {
+    if (walk_ && mix.lines_in_media()) lines_.emplace(scene, mix, walk_.get(), counters);
+  }
 
   /// Everything that arrives along the ray; without `emission`, all but what an area light's surface that the
   /// ray meets first emits by itself.
@@ -28,6 +30,10 @@ class PathTracer {
   /// What media scatter towards the ray's origin from before `distance`; takes from the throughput what does
   /// not pass them.
   Rgb scattered(const Ray& ray, double distance, const PassSampler& sampler, int depth, Rgb& throughput);
+  /// The same without the throughput, by points or by lines; `left`: the share of light that passes.
+  Rgb scattered_by_points(const Ray& ray, double distance, const PassSampler& sampler, int depth, Rgb& left);
+  Rgb scattered_by_lines(const Ray& ray, double distance, const PassSampler& sampler, int depth, Rgb& left);
+  Rgb lit(const std::vector<ScatterVertex>& vertices, const Ray& ray, int depth, DirectLight& direct);
   Rgb background(const Vec3f& direction) const;
   /// One specular lobe, drawn in proportion to its throughput; false where there is none.
   bool bounce(const ShadingPoint& point, const PassSampler& sampler, int depth, Vec3f& direction,
@@ -38,7 +44,8 @@ class PathTracer {
   DirectLight direct_;
   int max_depth_;
   QueryCounters& counters_;
-  std::vector<ScatterVertex> vertices_;
+  std::vector<ScatterVertex> vertices_, far_vertices_;
+  std::optional<MediumLines> lines_;
 };
 
 }  // namespace penumbra

@@ -3,7 +3,7 @@
 namespace penumbra {
 
 PreparedMix::PreparedMix(const Mix& mix, const LightSet& lights)
-    : combination_(mix.combination), smoothing_{mix.smooth_shape, mix.smooth_width} {
+    : combination_(mix.combination), smoothing_{mix.smooth_shape, mix.smooth_width}, mix_(mix) {
   for (const StrategyCount& s : mix.strategies) {
     counts_.push_back(s.count);
     environment_.push_back(fit_environment(s));

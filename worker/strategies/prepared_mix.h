@@ -21,6 +21,11 @@ class PreparedMix {
   Slot slot(size_t area_emitter, size_t s) const { return {fitted_[area_emitter * slots() + s], counts_[s]}; }
   Slot environment_slot(size_t s) const { return {environment_[s], counts_[s]}; }
   Combination combination() const { return combination_; }
+  bool lines_in_media() const { return mix_.medium == MediumSampling::kLine; }
+  /// Light samples of a shading point and light.
+  int samples() const { return mix_.samples(); }
+  /// The mix itself, to be prepared for other lights.
+  const Mix& mix() const { return mix_; }
   const Smoothing& smoothing() const { return smoothing_; }
 
  private:
@@ -29,6 +34,8 @@ class PreparedMix {
   std::vector<int> counts_;
   Combination combination_;
   Smoothing smoothing_;
+  Mix mix_;
+
 };
 
 }  // namespace penumbra

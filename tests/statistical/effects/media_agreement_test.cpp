@@ -6,9 +6,18 @@
 namespace penumbra {
 namespace {
 
-const std::vector<std::string> kMixes = {
-    "area:2",      "sa:2",        "line-area@0:1",      "line-area@90:1",          "line-sa@u:1",
-    "line-sa@v:1", "bsdf:1+sa:1", "bsdf:1+line-sa@v:1", "area:1+line-sa@u:1/free", "visible-area:1"};
+const std::vector<std::string> kMixes = {"area:2",
+                                         "sa:2",
+                                         "line-area@0:1",
+                                         "line-area@90:1",
+                                         "line-sa@u:1",
+                                         "line-sa@v:1",
+                                         "bsdf:1+sa:1",
+                                         "bsdf:1+line-sa@v:1",
+                                         "area:1+line-sa@u:1/free",
+                                         "visible-area:1",
+                                         "sa:2/medium=line",
+                                         "bsdf:1+line-sa@v:1/medium=line"};
 
 TEST(MediaAgreement, ShaftsThroughSlats) {
   test::AgreementSpec how;

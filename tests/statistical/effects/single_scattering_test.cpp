@@ -68,7 +68,8 @@ const std::vector<std::string> kMixes = {"bsdf:2+sa:2",
                                          "area:1+line-sa@u:1/power",
                                          "sa:1+line-area@90:1/free",
                                          "line-analytic@0:1",
-                                         "line-area@0:1+sa:1/smooth=auto"};
+                                         "line-area@0:1+sa:1/smooth=auto",
+                                         "sa:2/medium=line"};
 
 TEST(Media, ASlabLetsThroughExpOfItsDepth) {
   for (const double depth : {1e-8, 1e-3, 1.0, 20.0, 1e4}) {
@@ -113,7 +114,7 @@ TEST(Media, APointLightScatteredOnce) {
     reference[c] = scattered_from(Vec3d(0.3, 0.4, 2), sigma_a[c] + sigma_s[c], sigma_s[c], g, 80, 400000,
                                   [](const Vec3d&) { return 5.0; });
   expect_mean(narrow_scene(medium, "LightSource \"point\" \"point from\" [0.3 0.4 2] \"rgb I\" [5 5 5]\n"),
-              {"sa:1"}, 64, reference, 0.01);
+              {"sa:1", "sa:4/balance/medium=line"}, 64, reference, 0.01);
 }
 
 /// The quad light [-0.5,0.5] × {2} × [2,3] that looks down, with a screen below a part of it.
@@ -181,8 +182,11 @@ TEST(Media, FurnaceOfABallOfScatterers) {
     scene.replace(scene.find("MediumInterface \"\" \"m\""), 22, "");
     const double value = furnace(tau);
     const double reference[3] = {value, value, value};
-    expect_mean(scene, {"bsdf:2", "sa:2", "bsdf:1+line-sa@u:1"}, 64, reference, 0.01, 3e-4);
-    if (tau <= 1e-3) { EXPECT_NEAR(value, 1, 4 * tau * tau + 1e-12); }
+    expect_mean(scene, {"bsdf:2", "sa:2", "bsdf:1+line-sa@u:1", "sa:2/medium=line"}, 64, reference, 0.01,
+                3e-4);
+    if (tau <= 1e-3) {
+      EXPECT_NEAR(value, 1, 4 * tau * tau + 1e-12);
+    }
   }
 }
 

@@ -1,0 +1,179 @@
+#include "worker/render/medium_lines.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace penumbra {
+namespace {
+
+/// PassSampler::branch of what is drawn here.
+constexpr int kLineBranch = 1 << 21;
+
+/// Is it infinitely far away?
+bool is_far(const LightSet& lights, size_t light) {
+  if (light < lights.area.size()) return false;
+  const size_t behind = light - lights.area.size();
+  return behind < lights.environments.size() ||
+         std::holds_alternative<DistantEmitter>(lights.delta[behind - lights.environments.size()]);
+}
+
+LightSet far_lights(const Scene& scene) {
+  LightSet far;
+  far.environments = scene.lights.environments;
+  for (const DeltaEmitter& e : scene.lights.delta)
+    if (std::holds_alternative<DistantEmitter>(e)) far.delta.push_back(e);
+  far.by_mesh.resize(scene.meshes.size());
+  far.finish(scene.lights.reach());
+  return far;
+}
+
+}  // namespace
+
+MediumLines::Far::Far(const Scene& scene, const PreparedMix& prepared, MediumWalk* walk,
+                      QueryCounters& counters)
+    : lights(far_lights(scene)),
+      mix(prepared.mix(), lights),
+      direct({*scene.geometry, lights, walk}, mix, counters) {}
+
+MediumLines::MediumLines(const Scene& scene, const PreparedMix& mix, MediumWalk* walk,
+                         QueryCounters& counters)
+    : scene_(scene), count_(mix.samples()), walk_(*walk), counters_(counters) {
+  for (size_t l = 0; l < scene.lights.size() && !far_; ++l)
+    if (is_far(scene.lights, l)) far_ = std::make_unique<Far>(scene, mix, walk, counters);
+}
+
+double MediumLines::end(const Vec3f& origin) const {
+  Vec3f lo, hi;
+  scene_.geometry->bounds(lo, hi);
+  if (!(lo.x <= hi.x)) return 2 * double(scene_.lights.reach());
+  return (Vec3d(lo) * 0.5 + Vec3d(hi) * 0.5 - Vec3d(origin)).length() + 2 * double(scene_.lights.reach());
+}
+
+Rgb MediumLines::estimate(const Ray& ray, double until, const PassSampler& sampler, int depth) {
+  const PassSampler numbers = sampler.branch(kLineBranch);
+  const LightSet& lights = scene_.lights;
+  const size_t parts = walk_.parts().size();
+  Rgb sum(0);
+  const auto ask = [&](size_t light, double weight, int i, int n) {
+    Apex apex = choose(light, numbers.light(depth, uint32_t(lights.draws() ? 0 : light), 0, i, n));
+    apex.weight *= weight;
+    for (size_t part = 0; part < parts; ++part)
+      sum += along(apex, ray, part, until,
+                   numbers.line(depth, uint32_t(lights.draws() ? 0 : light), int(part), i, n));
+  };
+  if (!lights.draws()) {
+    for (size_t l = 0; l < lights.size(); ++l)
+      if (!is_far(lights, l))
+        for (int i = 0; i < count_; ++i) ask(l, 1.0 / count_, i, count_);
+    return sum;
+  }
+  const int draws = LightSet::kMostAsked;
+  const double middle = 0.5 * std::min(until, double(lights.reach()));
+  const Receiver receiver{Vec3d(ray.origin) + Vec3d(ray.direction) * middle, false, Vec3d(0)};
+  for (int d = 0; d < draws; ++d) {
+    const DrawnLight drawn = lights.draw(receiver, numbers.draw(depth, d, draws));
+    if (drawn.probability > 0 && !is_far(lights, drawn.light))
+      ask(drawn.light, 1 / (draws * drawn.probability), d, draws);
+  }
+  return sum;
+}
+
+MediumLines::Apex MediumLines::choose(size_t light, const Vec2d& u) const {
+  const LightSet& lights = scene_.lights;
+  Apex apex;
+  apex.light = light;
+  if (light < lights.area.size()) {
+    const LightPoint at = sample_area(lights.area[light].shape, Vec3d(0), u);
+    apex.p = at.p;
+    apex.n = at.n;
+    apex.weight = area(lights.area[light].shape);
+    return apex;
+  }
+  const DeltaEmitter& emitter = lights.delta[light - lights.area.size() - lights.environments.size()];
+  if (const auto* point = std::get_if<PointEmitter>(&emitter))
+    apex.p = Vec3d(point->position);
+  else
+    apex.p = Vec3d(std::get<SpotEmitter>(emitter).position);
+  return apex;
+}
+
+bool MediumLines::clip_to_front(const Apex& apex, const Ray& ray, double& t0, double& t1) {
+  const double height = apex.n.dot(Vec3d(ray.origin) - apex.p), slope = apex.n.dot(Vec3d(ray.direction));
+  if (apex.n.length2() == 0) return t0 < t1;
+  if (slope == 0) return height > 0 && t0 < t1;
+  const double crossing = -height / slope;
+  if (slope > 0)
+    t0 = std::max(t0, crossing);
+  else
+    t1 = std::min(t1, crossing);
+  return t0 < t1;
+}
+
+void MediumLines::find_visible(const Apex& apex, const Ray& ray, double t0, double t1) {
+  const LightSet& lights = scene_.lights;
+  LineQuery query;
+  query.x = Vec3f(apex.p);
+  query.a = ray.origin + ray.direction * float(t0);
+  query.b = ray.origin + ray.direction * float(t1);
+  if (apex.light < lights.area.size()) {
+    const AreaEmitter& emitter = lights.area[apex.light];
+    query.light = {kNone, emitter.mesh, emitter.first_primitive};
+    query.light_primitives = emitter.primitives;
+  }
+  scene_.geometry->visible({&query, 1}, visible_, counters_);
+}
+
+Rgb MediumLines::arriving(const Apex& apex, const Vec3f& x, Vec3f& wi, double& distance) const {
+  const LightSet& lights = scene_.lights;
+  if (apex.light >= lights.area.size()) {
+    const DeltaLight light = delta_light_at(
+        lights.delta[apex.light - lights.area.size() - lights.environments.size()], x, lights.reach());
+    wi = light.wi;
+    distance = (apex.p - Vec3d(x)).length();
+    return light.irradiance;
+  }
+  const Vec3d to_light = apex.p - Vec3d(x);
+  distance = to_light.length();
+  wi = Vec3f(to_light / distance);
+  const double cosine = -apex.n.dot(to_light) / distance;
+  return lights.area[apex.light].radiance * float(std::max(cosine, 0.0) / (distance * distance));
+}
+
+Rgb MediumLines::along(const Apex& apex, const Ray& ray, size_t part, double until, double u) {
+  const MediumPart& in = walk_.parts()[part];
+  double t0 = in.t0, t1 = std::min(in.t1, until);
+  if (!(t0 < t1) || !clip_to_front(apex, ray, t0, t1)) return Rgb(0);
+  find_visible(apex, ray, t0, t1);
+  angles_.clear();
+  double total = 0;
+  for (const Interval& v : visible_[0]) {
+    const double a = t0 + (t1 - t0) * double(v.lo), b = v.hi == 1 ? t1 : t0 + (t1 - t0) * double(v.hi);
+    angles_.emplace_back(MediumRay{Vec3d(ray.origin), Vec3d(ray.direction), a, b}, apex.p);
+    if (!angles_.back().possible())
+      angles_.pop_back();
+    else
+      total += angles_.back().angle();
+  }
+  if (angles_.empty()) return Rgb(0);
+  double rest = u * total;
+  size_t chosen = 0;
+  while (chosen + 1 < angles_.size() && rest >= angles_[chosen].angle()) rest -= angles_[chosen++].angle();
+  const Equiangular& interval = angles_[chosen];
+  const double t = interval.sample(std::min(rest / interval.angle(), 1.0));
+  // Uniform in all the angles: the density is that of its own interval, times its share of them.
+  const double density = interval.pdf(t) * (interval.angle() / total);
+  if (!(density > 0)) return Rgb(0);
+  const Vec3f x(Vec3d(ray.origin) + Vec3d(ray.direction) * t);
+  Vec3f wi;
+  double distance = 0;
+  Rgb f = arriving(apex, x, wi, distance);
+  if (!(f.x + f.y + f.z > 0)) return Rgb(0);
+  walk_.stand_in(in.medium);
+  f *= in.phase->scatter(-ray.direction, wi) * walk_.scattering(part, t) *
+       walk_.transmittance(x, wi, distance);
+  if (scene_.geometry->has_alpha() && scene_.geometry->occluded_by_alpha(x, Vec3f(apex.p), counters_))
+    return Rgb(0);
+  return f * float(apex.weight / density);
+}
+
+}  // namespace penumbra
