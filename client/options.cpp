@@ -120,6 +120,7 @@ void add_job_options(CLI::App& app, JobOptions& o) {
          "Strategies: bsdf area sa visible-area line-area@DEG line-uniform@DEG line-analytic@DEG line-sa@u "
          "line-sa@v. "
          "Combinations: /balance (default) /free /power /average /smooth=WIDTH|auto /smooth-ease=WIDTH|auto. "
+         "Last, where the camera has a lens: /lens=point (default) or /lens=line, chords of it. "
          "Or auto, alone: the planner chooses for each tile. "
          "Default: the scene's Integrator \"pointline\", else auto")
       ->type_name("MIX")

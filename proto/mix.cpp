@@ -90,7 +90,25 @@ absl::Status parse_combination(std::string_view word, Mix& mix) {
   } else {
     return fault(word,
                  "unknown combination; there are balance, free, power, average, smooth=WIDTH|auto, "
-                 "smooth-ease=WIDTH|auto");
+                 "smooth-ease=WIDTH|auto, and after it lens=point|line");
+  }
+  return absl::OkStatus();
+}
+
+/// What stands behind the strategies, each after a slash: a combination, then options.
+absl::Status parse_rest(std::string_view rest, Mix& mix) {
+  for (bool first = true; !rest.empty(); first = false) {
+    const size_t slash = std::min(rest.find('/', 1), rest.size());
+    std::string_view word = rest.substr(1, slash - 1);
+    rest.remove_prefix(slash);
+    if (!consume_prefix(word, "lens=")) {
+      if (!first) return fault(word, "after the combination there is only lens=point or lens=line");
+      RETURN_IF_ERROR(parse_combination(word, mix));
+      continue;
+    }
+    if (!rest.empty()) return fault(rest.substr(1), "lens= must stand last");
+    if (word != "point" && word != "line") return fault(word, "a lens is sampled by lens=point or lens=line");
+    mix.lens = word == "line" ? LensSampling::kLine : LensSampling::kPoint;
   }
   return absl::OkStatus();
 }
@@ -157,7 +175,7 @@ absl::StatusOr<Mix> parse_mix(std::string_view text) {
   std::string_view sum = text;
   if (const size_t slash = text.find('/'); slash != std::string_view::npos) {
     sum = text.substr(0, slash);
-    RETURN_IF_ERROR(parse_combination(text.substr(slash + 1), mix));
+    RETURN_IF_ERROR(parse_rest(text.substr(slash), mix));
   }
   for (;;) {
     const size_t plus = sum.find('+');
@@ -179,7 +197,7 @@ std::string label(const Mix& mix) {
   std::string out;
   for (const StrategyCount& s : mix.strategies)
     out += fmt::format("{}{}:{}", out.empty() ? "" : "+", name_of(s), s.count);
-  return fmt::format("{}/{}", out, name_of(mix));
+  return fmt::format("{}/{}{}", out, name_of(mix), mix.lens == LensSampling::kLine ? "/lens=line" : "");
 }
 
 std::vector<std::string> labels(const std::vector<Mix>& mixes) {

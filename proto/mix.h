@@ -36,22 +36,27 @@ enum class Combination { kBalance, kFree, kPower, kAverage, kSmooth };
 /// How `smooth=` falls to 0: the paper's cubic smoothstep, or `smooth-ease=`, the ease-in 2t − t².
 enum class SmoothShape { kCubic, kEaseIn };
 
+/// How the lens of a camera that has one is sampled: by points of it, or by chords of it, along which what is seen
+/// is known exactly. Nothing where the camera is a pinhole.
+enum class LensSampling { kPoint, kLine };
+
 struct Mix {
   bool automatic = false;  ///< `auto`: the planner chooses per tile; then strategies is empty
   std::vector<StrategyCount> strategies;
   Combination combination = Combination::kBalance;
   std::optional<double> smooth_width;  ///< kSmooth: scene units; empty means derived from the light
   SmoothShape smooth_shape = SmoothShape::kCubic;  ///< kSmooth
+  LensSampling lens = LensSampling::kPoint;
   bool operator==(const Mix&) const = default;
 
   int samples() const;  ///< light samples per shading point and light
 };
 
-/// Reads the grammar of interface.md: strategy[:count] joined by `+`, then /combination.
+/// Reads the grammar of interface.md: strategy[:count] joined by `+`, then /combination, then /lens=point|line.
 /// InvalidArgument names the word at fault.
 absl::StatusOr<Mix> parse_mix(std::string_view text);
 
-/// The normal form: counts and combination always written. parse_mix(label(m)) == m.
+/// The normal form: counts and combination always written, lens=line where it is so. parse_mix(label(m)) == m.
 std::string label(const Mix& mix);
 
 /// Labels of a job's mixes; a repeated mix gets `#2`, `#3`, …
