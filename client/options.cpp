@@ -121,6 +121,7 @@ void add_job_options(CLI::App& app, JobOptions& o) {
          "line-sa@v. "
          "Combinations: /balance (default) /free /power /average /smooth=WIDTH|auto /smooth-ease=WIDTH|auto. "
          "Last, where there are media: /medium=point (default) or /medium=line, lit by lines from the lights. "
+         "Last, where the camera has a lens: /lens=point (default) or /lens=line, chords of it. "
          "Or auto, alone: the planner chooses for each tile. "
          "Default: the scene's Integrator \"pointline\", else auto")
       ->type_name("MIX")

@@ -53,12 +53,30 @@ absl::StatusOr<StrategyCount> parse_strategy(std::string_view word) {
       return fault(word, fmt::format("the count must be a whole number from 1 to {}", kMostSamples));
     s.count = *count;
   }
-  if (name == "bsdf") { s.kind = StrategyKind::kBsdf; return s; }
-  if (name == "area") { s.kind = StrategyKind::kArea; return s; }
-  if (name == "sa") { s.kind = StrategyKind::kSolidAngle; return s; }
-  if (name == "visible-area") { s.kind = StrategyKind::kVisibleArea; return s; }
-  if (name == "line-sa@u") { s.kind = StrategyKind::kLineSolidAngleU; return s; }
-  if (name == "line-sa@v") { s.kind = StrategyKind::kLineSolidAngleV; return s; }
+  if (name == "bsdf") {
+    s.kind = StrategyKind::kBsdf;
+    return s;
+  }
+  if (name == "area") {
+    s.kind = StrategyKind::kArea;
+    return s;
+  }
+  if (name == "sa") {
+    s.kind = StrategyKind::kSolidAngle;
+    return s;
+  }
+  if (name == "visible-area") {
+    s.kind = StrategyKind::kVisibleArea;
+    return s;
+  }
+  if (name == "line-sa@u") {
+    s.kind = StrategyKind::kLineSolidAngleU;
+    return s;
+  }
+  if (name == "line-sa@v") {
+    s.kind = StrategyKind::kLineSolidAngleV;
+    return s;
+  }
   constexpr std::pair<std::string_view, StrategyKind> kAtAnAngle[] = {
       {"line-area@", StrategyKind::kLineArea},
       {"line-uniform@", StrategyKind::kLineUniform},
@@ -69,15 +87,20 @@ absl::StatusOr<StrategyCount> parse_strategy(std::string_view word) {
     ASSIGN_OR_RETURN(s.angle_degrees, parse_angle(word, name));
     return s;
   }
-  return fault(word, "unknown strategy; there are bsdf, area, sa, visible-area, line-area@DEG, line-sa@u, "
-                     "line-sa@v, line-uniform@DEG, line-analytic@DEG and, alone, auto");
+  return fault(word,
+               "unknown strategy; there are bsdf, area, sa, visible-area, line-area@DEG, line-sa@u, "
+               "line-sa@v, line-uniform@DEG, line-analytic@DEG and, alone, auto");
 }
 
 absl::Status parse_combination(std::string_view word, Mix& mix) {
-  if (word == "balance") mix.combination = Combination::kBalance;
-  else if (word == "free") mix.combination = Combination::kFree;
-  else if (word == "power") mix.combination = Combination::kPower;
-  else if (word == "average") mix.combination = Combination::kAverage;
+  if (word == "balance")
+    mix.combination = Combination::kBalance;
+  else if (word == "free")
+    mix.combination = Combination::kFree;
+  else if (word == "power")
+    mix.combination = Combination::kPower;
+  else if (word == "average")
+    mix.combination = Combination::kAverage;
   else if (const bool eases = consume_prefix(word, "smooth-ease=");
            eases || consume_prefix(word, "smooth=")) {
     mix.combination = Combination::kSmooth;
@@ -90,50 +113,84 @@ absl::Status parse_combination(std::string_view word, Mix& mix) {
   } else {
     return fault(word,
                  "unknown combination; there are balance, free, power, average, smooth=WIDTH|auto, "
-                 "smooth-ease=WIDTH|auto, and after it medium=point|line");
+                 "smooth-ease=WIDTH|auto, and after it lens=point|line and medium=point|line");
   }
   return absl::OkStatus();
 }
 
-/// What stands behind the strategies, each after a slash: a combination, then options.
+/// `lens=` or `medium=`; false: another word.
+absl::StatusOr<bool> parse_effect(std::string_view word, Mix& mix) {
+  const auto lines = [](std::string_view value, std::string_view message) -> absl::StatusOr<bool> {
+    if (value != "point" && value != "line") return fault(value, message);
+    return value == "line";
+  };
+  if (consume_prefix(word, "lens=")) {
+    ASSIGN_OR_RETURN(const bool line, lines(word, "a lens is sampled by lens=point or lens=line"));
+    mix.lens = line ? LensSampling::kLine : LensSampling::kPoint;
+    return true;
+  }
+  if (consume_prefix(word, "medium=")) {
+    ASSIGN_OR_RETURN(const bool line, lines(word, "media are lit by medium=point or medium=line"));
+    mix.medium = line ? MediumSampling::kLine : MediumSampling::kPoint;
+    return true;
+  }
+  return false;
+}
+
+/// What stands behind the strategies, each after a slash: a combination, then how effects are sampled.
 absl::Status parse_rest(std::string_view rest, Mix& mix) {
+  bool effects = false;
   for (bool first = true; !rest.empty(); first = false) {
     const size_t slash = std::min(rest.find('/', 1), rest.size());
-    std::string_view word = rest.substr(1, slash - 1);
+    const std::string_view word = rest.substr(1, slash - 1);
     rest.remove_prefix(slash);
-    if (!consume_prefix(word, "medium=")) {
-      if (!first) return fault(word, "after the combination there is only medium=point or medium=line");
-      RETURN_IF_ERROR(parse_combination(word, mix));
+    ASSIGN_OR_RETURN(const bool effect, parse_effect(word, mix));
+    if (effect) {
+      effects = true;
       continue;
     }
-    if (!rest.empty()) return fault(rest.substr(1), "medium= must stand last");
-    if (word != "point" && word != "line") return fault(word, "media are lit by medium=point or medium=line");
-    mix.medium = word == "line" ? MediumSampling::kLine : MediumSampling::kPoint;
+    if (effects) return fault(word, "lens= and medium= must stand last");
+    if (!first)
+      return fault(word, "after the combination there is only lens=point|line and medium=point|line");
+    RETURN_IF_ERROR(parse_combination(word, mix));
   }
   return absl::OkStatus();
 }
 
 std::string name_of(const StrategyCount& s) {
   switch (s.kind) {
-    case StrategyKind::kBsdf: return "bsdf";
-    case StrategyKind::kArea: return "area";
-    case StrategyKind::kSolidAngle: return "sa";
-    case StrategyKind::kVisibleArea: return "visible-area";
-    case StrategyKind::kLineArea: return fmt::format("line-area@{}", s.angle_degrees);
-    case StrategyKind::kLineSolidAngleU: return "line-sa@u";
-    case StrategyKind::kLineSolidAngleV: return "line-sa@v";
-    case StrategyKind::kLineUniform: return fmt::format("line-uniform@{}", s.angle_degrees);
-    case StrategyKind::kLineAnalytic: return fmt::format("line-analytic@{}", s.angle_degrees);
+    case StrategyKind::kBsdf:
+      return "bsdf";
+    case StrategyKind::kArea:
+      return "area";
+    case StrategyKind::kSolidAngle:
+      return "sa";
+    case StrategyKind::kVisibleArea:
+      return "visible-area";
+    case StrategyKind::kLineArea:
+      return fmt::format("line-area@{}", s.angle_degrees);
+    case StrategyKind::kLineSolidAngleU:
+      return "line-sa@u";
+    case StrategyKind::kLineSolidAngleV:
+      return "line-sa@v";
+    case StrategyKind::kLineUniform:
+      return fmt::format("line-uniform@{}", s.angle_degrees);
+    case StrategyKind::kLineAnalytic:
+      return fmt::format("line-analytic@{}", s.angle_degrees);
   }
   std::abort();
 }
 
 std::string name_of(const Mix& mix) {
   switch (mix.combination) {
-    case Combination::kBalance: return "balance";
-    case Combination::kFree: return "free";
-    case Combination::kPower: return "power";
-    case Combination::kAverage: return "average";
+    case Combination::kBalance:
+      return "balance";
+    case Combination::kFree:
+      return "free";
+    case Combination::kPower:
+      return "power";
+    case Combination::kAverage:
+      return "average";
     case Combination::kSmooth:
       return fmt::format("{}={}", mix.smooth_shape == SmoothShape::kEaseIn ? "smooth-ease" : "smooth",
                          mix.smooth_width ? fmt::format("{}", *mix.smooth_width) : "auto");
@@ -197,7 +254,8 @@ std::string label(const Mix& mix) {
   std::string out;
   for (const StrategyCount& s : mix.strategies)
     out += fmt::format("{}{}:{}", out.empty() ? "" : "+", name_of(s), s.count);
-  return fmt::format("{}/{}{}", out, name_of(mix), mix.medium == MediumSampling::kLine ? "/medium=line" : "");
+  return fmt::format("{}/{}{}{}", out, name_of(mix), mix.lens == LensSampling::kLine ? "/lens=line" : "",
+                     mix.medium == MediumSampling::kLine ? "/medium=line" : "");
 }
 
 std::vector<std::string> labels(const std::vector<Mix>& mixes) {

@@ -39,6 +39,9 @@ enum class SmoothShape { kCubic, kEaseIn };
 /// How single scattering in media is lit: at points of the camera's ray, or on the parts of it that a point of a
 /// light sees, which are known exactly. Nothing where there are no media.
 enum class MediumSampling { kPoint, kLine };
+/// How the lens of a camera that has one is sampled: by points of it, or by chords of it, along which what is seen
+/// is known exactly. Nothing where the camera is a pinhole.
+enum class LensSampling { kPoint, kLine };
 
 struct Mix {
   bool automatic = false;  ///< `auto`: the planner chooses per tile; then strategies is empty
@@ -47,16 +50,17 @@ struct Mix {
   std::optional<double> smooth_width;  ///< kSmooth: scene units; empty means derived from the light
   SmoothShape smooth_shape = SmoothShape::kCubic;  ///< kSmooth
   MediumSampling medium = MediumSampling::kPoint;
+  LensSampling lens = LensSampling::kPoint;
   bool operator==(const Mix&) const = default;
 
   int samples() const;  ///< light samples per shading point and light
 };
 
-/// Reads the grammar of interface.md: strategy[:count] joined by `+`, then /combination, then /medium=point|line.
+/// Reads the grammar of interface.md: strategy[:count] joined by `+`, then /combination, then /lens=point|line and /medium=point|line.
 /// InvalidArgument names the word at fault.
 absl::StatusOr<Mix> parse_mix(std::string_view text);
 
-/// The normal form: counts and combination always written, medium=line where it is so. parse_mix(label(m)) == m.
+/// The normal form: counts and combination always written, lens=line and medium=line where it is so. parse_mix(label(m)) == m.
 std::string label(const Mix& mix);
 
 /// Labels of a job's mixes; a repeated mix gets `#2`, `#3`, …

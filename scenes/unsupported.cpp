@@ -68,7 +68,7 @@ struct Effect {
 };
 
 constexpr Effect kEffects[] = {
-    {"lens", "a pinhole instead", false},
+    {"lens", "a pinhole instead", true},
     {"motion", "everything stands as when the shutter opens", false},
     {"media", "vacuum instead", true},
 };

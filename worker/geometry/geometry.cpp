@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "proto/status.h"
+#include "worker/geometry/bow_tie_walk.h"
 #include "worker/geometry/embree_scene.h"
 #include "worker/geometry/line_query.h"
 #include "worker/geometry/line_fan.h"
@@ -102,6 +103,11 @@ bool Geometry::occluded(const Shaft& shaft, const Vec3f& x, const Vec3f& y, Quer
   // Alpha-tested meshes are in no list.
   if (shaft.content_ == ShaftContent::kClear) return occluded_by_alpha(x, y, counters);
   return shaft.content_ == ShaftContent::kHidden || occluded(x, y, counters);
+}
+
+void Geometry::nearest(const FocusedChord& chord, std::vector<SeenInterval>& out,
+                       QueryCounters& counters) const {
+  nearest_along(parts_->lines, chord, out, counters);
 }
 
 Geometry::BuildTimes Geometry::build_times() const {

@@ -63,6 +63,17 @@ struct LineQuery {
       0;  ///< light.mesh never hide the chord: they are the light's own (flat) surface
 };
 
+/// A chord a→b of which every point sends one ray, through `focus` and on: a planar bow-tie.
+struct FocusedChord {
+  Vec3d a, b, focus;
+};
+
+/// What the rays from v in [lo,hi] of a chord meet first; mesh kNone: nothing.
+struct SeenInterval {
+  double lo = 0, hi = 0;
+  PrimitiveId id;
+};
+
 /// What line and ray queries cost, for statistics; one per thread.
 struct QueryCounters {
   uint64_t rays = 0, line_queries = 0;
@@ -107,6 +118,11 @@ class Geometry {
                QueryCounters& counters) const;
   /// As occluded(x, y), for the shaft's x and a y on its light, on its side of the horizon.
   bool occluded(const Shaft& shaft, const Vec3f& x, const Vec3f& y, QueryCounters& counters) const;
+
+  /// The nearest surface along the rays of a focused chord: ascending intervals that cover [0,1]. Opaque meshes only,
+  /// and to within double precision: where the answer decides what is looked at, a ray must still look. One
+  /// interval of nothing for a chord seen end on from the focus.
+  void nearest(const FocusedChord& chord, std::vector<SeenInterval>& out, QueryCounters& counters) const;
 
   struct BuildTimes {
     double embree_seconds = 0, line_bvh_seconds = 0;

@@ -39,6 +39,7 @@ absl::StatusOr<Camera> Camera::build(const SceneDescription& description, int wi
   camera.corner_ = direction({x0 * scale, y1 * scale, 1});
   camera.right_ = direction({(x1 - x0) * scale / width, 0, 0});
   camera.down_ = direction({0, (y0 - y1) * scale / height, 0});
+  camera.pixel_size_ = {std::abs(x1 - x0) * scale / width, std::abs(y1 - y0) * scale / height};
   Imath::M33d from_image;
   for (int k = 0; k < 3; ++k) {
     from_image[0][k] = camera.right_[k];

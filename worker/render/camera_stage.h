@@ -4,6 +4,7 @@
 // that effects know of this room.
 #include <vector>
 
+#include "proto/mix.h"
 #include "worker/render/camera.h"
 #include "worker/sampling/sampler.h"
 
@@ -15,9 +16,12 @@ struct WeightedRay {
   float weight = 1;
 };
 
-/// What a stage draws with: ray i of the n that a pass sends from a pixel.
+/// What a stage draws with: sample i of the n that a pass takes of a pixel's film.
 struct CameraDraw {
   const PassSampler& sampler;
+  const Mix& mix;  ///< which may ask for lines
+  const Geometry& geometry;
+  QueryCounters& counters;
   int i = 0, n = 1;
 };
 
@@ -30,9 +34,13 @@ class CameraStage {
   virtual void rays(const CameraRay& pinhole, const CameraDraw& draw,
                     std::vector<WeightedRay>& out) const = 0;
 
-  /// A point at `depth` (along the viewing axis, in camera space, positive) is seen from up to this far from
-  /// its projection, in pixels per (width, height) of a pixel at depth 1 of camera space.
-  virtual double spread(double depth) const = 0;
+  /// How many film samples a pass takes for the emission of a pixel that sees a light, where `rays` of a pinhole would
+  /// do; a sample that integrates over part of what blurs the light needs fewer.
+  virtual int emission_samples(const Mix&, int rays) const { return rays; }
+
+  /// A point at `depth` (> 0, along the viewing axis in camera space) is seen at most this far from its
+  /// projection, both at depth 1 of camera space.
+  virtual double blur(double depth) const = 0;
 };
 
 }  // namespace penumbra

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "worker/render/camera_stage.h"
+
 namespace penumbra {
 namespace {
 
@@ -11,11 +13,14 @@ namespace {
 struct Outline {
   Vec2d corners[4];
   int count = 0;
+  double nearest = std::numeric_limits<double>::infinity(), farthest = 0;  ///< depths of the corners
   Vec2d lo{std::numeric_limits<double>::infinity()}, hi{-std::numeric_limits<double>::infinity()};
 
   void add(const Vec3d& homogeneous) {
     const Vec2d p = Vec2d(homogeneous.x, homogeneous.y) / homogeneous.z;
     corners[count++] = p;
+    nearest = std::min(nearest, homogeneous.z);
+    farthest = std::max(farthest, homogeneous.z);
     lo = {std::min(lo.x, p.x), std::min(lo.y, p.y)};
     hi = {std::max(hi.x, p.x), std::max(hi.y, p.y)};
   }
@@ -68,6 +73,15 @@ void mark(const Outline& outline, const Vec2d& radius, const PixelRect& tile, st
         marks[size_t(y - tile.y0) * tile.width() + x - tile.x0] = 1;
 }
 
+/// How far from its projection the light may leave a trace: the filter's radius, and the blur of what is between the
+/// depths of the outline, which is largest at one of them (a lens focuses at one depth and blurs more either way).
+Vec2d reach(const Scene& scene, const Camera& camera, const Outline& outline) {
+  const Vec2d filter = scene.filter->radius();
+  const CameraStage* stage = scene.effects.camera.get();
+  if (!stage) return filter;
+  return filter + Vec2d(std::max(stage->blur(outline.nearest), stage->blur(outline.farthest))) / camera.pixel_size();
+}
+
 }  // namespace
 
 std::vector<uint8_t> light_pixels(const Scene& scene, const Camera& camera, const PixelRect& tile) {
@@ -81,7 +95,7 @@ std::vector<uint8_t> light_pixels(const Scene& scene, const Camera& camera, cons
       const Vec3d triangle[3] = {Vec3d(mesh.positions[i[0]]), Vec3d(mesh.positions[i[1]]),
                                  Vec3d(mesh.positions[i[2]])};
       const Outline outline = project(camera, triangle);
-      if (outline.count > 0) mark(outline, scene.filter->radius(), tile, marks);
+      if (outline.count > 0) mark(outline, reach(scene, camera, outline), tile, marks);
     }
   }
   return marks;

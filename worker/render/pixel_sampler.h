@@ -36,6 +36,7 @@ class PixelSampler {
   PixelSampler(const Rendering& rendering, const Mix& mix, size_t index, int64_t group)
       : rendering_(rendering),
         filter_(rendering.job.probe ? kCentreFilter : *rendering.scene.filter),
+        mix_(mix),
         index_(uint32_t(index)),
         group_(group),
         stage_(rendering.scene.effects.camera.get()),
@@ -71,25 +72,26 @@ class PixelSampler {
   /// Mean emission over the pixel's filter, from rays of its own.
   Rgb emission(const Vec2d& centre, const PassSampler& sampler) {
     Rgb sum(0);
-    for (int i = 0; i < kEmissionRays; ++i) {
-      const FilterSample filter = filter_.sample(sampler.film(i, kEmissionRays));
-      sum += emission(ray(centre, filter), {sampler, i, kEmissionRays}) * float(filter.weight);
+    const int n = stage_ ? stage_->emission_samples(mix_, kEmissionRays) : kEmissionRays;
+    for (int i = 0; i < n; ++i) {
+      const FilterSample filter = filter_.sample(sampler.film(i, n));
+      sum += emission(ray(centre, filter), sampler, i, n) * float(filter.weight);
     }
-    return sum / float(kEmissionRays);
+    return sum / float(n);
   }
 
   Rgb radiance(const CameraRay& pinhole, const PassSampler& sampler, bool emission) {
     if (!stage_) return tracer_.radiance(pinhole, sampler, emission);
-    stage_->rays(pinhole, {sampler}, rays_);
+    stage_->rays(pinhole, {sampler, mix_, *rendering_.scene.geometry, counters_}, rays_);
     Rgb sum(0);
     for (size_t k = 0; k < rays_.size(); ++k)
       sum += tracer_.radiance(rays_[k].ray, sampler.branch(int(k)), emission) * rays_[k].weight;
     return sum;
   }
 
-  Rgb emission(const CameraRay& pinhole, const CameraDraw& draw) {
+  Rgb emission(const CameraRay& pinhole, const PassSampler& sampler, int i, int n) {
     if (!stage_) return tracer_.emission(pinhole);
-    stage_->rays(pinhole, draw, rays_);
+    stage_->rays(pinhole, {sampler, mix_, *rendering_.scene.geometry, counters_, i, n}, rays_);
     Rgb sum(0);
     for (const WeightedRay& seen : rays_) sum += tracer_.emission(seen.ray) * seen.weight;
     return sum;
@@ -97,6 +99,7 @@ class PixelSampler {
 
   const Rendering& rendering_;
   const Filter& filter_;
+  Mix mix_;
   uint32_t index_;
   int64_t group_;
   const CameraStage* stage_;  ///< null: a pinhole

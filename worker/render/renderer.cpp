@@ -73,6 +73,7 @@ std::vector<std::string> substitutions(const Scene& scene, const Mix& mix) {
   std::vector<std::string> out;
   if (mix.medium == MediumSampling::kLine && !scene.effects.media)
     out.push_back("medium=line without media: nothing to do");
+  if (mix.lens == LensSampling::kLine && !scene.effects.camera) out.push_back("lens=line on a pinhole: nothing to do");
   for (const auto& [key, n] : counts)
     out.push_back(fmt::format("{} on {} {} light{}: {}", std::get<0>(key), n, std::get<1>(key), n == 1 ? "" : "s",
                               std::get<2>(key)));

@@ -42,7 +42,7 @@ TaskOutcome render_tile(const Scene& scene, const JobSpec& job, const TileTask& 
                         const std::atomic<bool>& cancel);
 
 /// Strategies of the mix that some light of the scene cannot serve, and what is used instead
-/// (`line-sa@v on 2 triangle lights: sa`). Empty: the mix fits.
+/// (`line-sa@v on 2 triangle lights: sa`), and lines on a lens that the camera has not. Empty: the mix fits.
 std::vector<std::string> substitutions(const Scene& scene, const Mix& mix);
 
 /// What `inspect` counts.

@@ -11,7 +11,7 @@ namespace {
 constexpr int64_t kMostSamples = (int64_t{1} << 32) - 1;
 
 // What a stream of numbers is for; part of its key.
-enum class Use : uint32_t { kFilm, kLens, kTime, kLight, kChoice, kSelect, kFilmAgain, kLine, kDraw, kLensAgain, kBranch };
+enum class Use : uint32_t { kFilm, kLens, kTime, kLight, kChoice, kSelect, kFilmAgain, kLine, kDraw, kAlongLens, kBranch };
 
 /// Key of one stream of a pixel and group. `a` and `b` number the streams of a use.
 uint64_t stream_key(uint64_t key, Use use, uint64_t a = 0, uint64_t b = 0) {
@@ -81,11 +81,11 @@ Vec2d PassSampler::film() const {
 Vec2d PassSampler::film(int i, int n) const {
   return square(stream_key(key_, Use::kFilmAgain), i, n);
 }
-Vec2d PassSampler::lens() const {
-  return square(stream_key(key_, Use::kLens), 0, 1);
-}
 Vec2d PassSampler::lens(int i, int n) const {
-  return square(stream_key(key_, Use::kLensAgain), i, n);
+  return square(stream_key(key_, Use::kLens, static_cast<uint32_t>(n)), i, n);
+}
+double PassSampler::along_lens(int i, int n) const {
+  return segment(stream_key(key_, Use::kAlongLens, static_cast<uint32_t>(n)), i, n);
 }
 PassSampler PassSampler::branch(int i) const {
   PassSampler own = *this;

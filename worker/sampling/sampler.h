@@ -27,14 +27,15 @@ class PassSampler {
   PassSampler(SamplerKind kind, uint64_t seed, uint32_t mix, TaskKind stage, uint32_t pixel, int64_t pass,
               int64_t group);
 
-  /// Position in the pixel's filter, lens, time: u in [0,1)².
+  /// Position in the pixel's filter, time: u in [0,1)².
   Vec2d film() const;
   /// Position i of n for what is looked at more often than the rest: stratified together, and over the passes
   /// of the group.
   Vec2d film(int i, int n) const;
-  /// The same for the lens.
-  Vec2d lens() const;
+  /// For ray i of n through the lens: a point of it, or a chord; streams of different n are independent.
   Vec2d lens(int i, int n) const;
+  /// A third number for the same ray: where on the chord.
+  double along_lens(int i, int n) const;
   double time() const;
   /// Where a pass sends several rays: the numbers of all that happens along ray i. Those of ray 0 are this
   /// sampler's own.

@@ -31,7 +31,10 @@ TEST(PassSampler, IsAFunctionOfItsKey) {
     EXPECT_NE(base, make(kind, 5, 4).light(1, 2, 2, 1, 4));
     EXPECT_NE(base, make(kind, 5, 4).light(1, 2, 3, 2, 4));
     EXPECT_NE(make(kind, 5, 4).select(0, 0), make(kind, 5, 4).select(0, 1));
-    EXPECT_NE(make(kind, 5, 4).film(), make(kind, 5, 4).lens());
+    EXPECT_NE(make(kind, 5, 4).film(), make(kind, 5, 4).lens(0, 1));
+    EXPECT_NE(make(kind, 5, 4).lens(0, 1), make(kind, 5, 4).lens(0, 2));
+    EXPECT_EQ(make(kind, 5, 4).branch(0).film(), make(kind, 5, 4).film());
+    EXPECT_NE(make(kind, 5, 4).branch(1).film(), make(kind, 5, 4).film());
   }
 }
 

@@ -1,0 +1,59 @@
+// Only the effects that a scene calls for: what is built, and how often it is called.
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "tests/support/render.h"
+#include "worker/render/camera_stage.h"
+#include "worker/render/scene.h"
+
+namespace penumbra {
+namespace {
+
+const std::string kGallery = PENUMBRA_SOURCE_DIR "/scenes/gallery/";
+
+TEST(CalledFor, PlainScenesHaveNoStage) {
+  for (const char* name : {"monolith.pbrt", "monolith-glossy.pbrt", "pergola.pbrt", "hard/far.pbrt"}) {
+    const ScenePtr scene = test::load(kGallery + name);
+    ASSERT_TRUE(scene) << name;
+    EXPECT_EQ(scene->effects.camera, nullptr) << name;
+  }
+  const ScenePtr scene = test::load(kGallery + "lens.pbrt");
+  ASSERT_TRUE(scene);
+  EXPECT_NE(scene->effects.camera, nullptr);
+}
+
+/// A stage that passes the pinhole's ray on, and counts.
+class Counting : public CameraStage {
+ public:
+  explicit Counting(std::atomic<int>& calls) : calls_(calls) {}
+  void rays(const CameraRay& pinhole, const CameraDraw&, std::vector<WeightedRay>& out) const override {
+    ++calls_;
+    out.assign(1, {pinhole, 1});
+  }
+  double blur(double) const override { return 0; }
+
+ private:
+  std::atomic<int>& calls_;
+};
+
+TEST(CalledFor, AStageIsCalledOncePerCameraRayAndChangesNothingByItself) {
+  // No pixel sees the light, so none has emission rays of its own.
+  const ScenePtr scene = test::load_text(
+      "Camera \"perspective\"\nWorldBegin\nShape \"trianglemesh\" \"integer indices\" [ 0 1 2 ] "
+      "\"point P\" [ -5 -5 3  5 -5 3  0 5 3 ]\n"
+      "AttributeBegin AreaLightSource \"diffuse\" Shape \"quad\" \"point o\" [ -1 -1 -1 ] \"vector u\" [ 2 0 "
+      "0 ] "
+      "\"vector v\" [ 0 2 0 ] AttributeEnd\n");
+  ASSERT_TRUE(scene);
+  const JobSpec job = test::job(12, 9, {"bsdf:1+sa:1", "line-sa@u:1/balance/lens=line"}, 5);
+  const test::Rendered plain = test::render(*scene, job);
+  std::atomic<int> calls = 0;
+  scene->effects.camera = std::make_shared<const Counting>(calls);
+  const test::Rendered staged = test::render(*scene, job);
+  EXPECT_EQ(calls, 12 * 9 * 5 * 2);
+  for (size_t m = 0; m < 2; ++m) EXPECT_EQ(plain.images[m].rgb, staged.images[m].rgb);
+}
+
+}  // namespace
+}  // namespace penumbra

@@ -1,0 +1,54 @@
+#include "proto/mix.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "proto/status.h"
+
+namespace penumbra {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(Mix, ALensOfLinesStandsAfterTheCombination) {
+  const auto mix = parse_mix("bsdf:2+sa:2/balance/lens=line");
+  ASSERT_TRUE(mix.ok());
+  EXPECT_EQ(mix->lens, LensSampling::kLine);
+  EXPECT_EQ(label(*mix), "bsdf:2+sa:2/balance/lens=line");
+  EXPECT_EQ(file_stem(label(*mix)), "bsdf-2+sa-2_balance_lens-line");
+}
+
+TEST(Mix, TheNormalFormSaysNothingOfPointsOnTheLens) {
+  for (const char* text : {"sa", "sa:1/lens=point", "sa/balance", "sa:1/balance/lens=point"}) {
+    const auto mix = parse_mix(text);
+    ASSERT_TRUE(mix.ok()) << text;
+    EXPECT_EQ(label(*mix), "sa:1/balance");
+  }
+}
+
+TEST(Mix, LabelsAreReadBack) {
+  for (const char* text : {"sa/lens=line", "bsdf+line-sa@v:3/smooth=0.25/lens=line",
+                           "sa+area/average/lens=line", "line-area@33.5:2/smooth-ease=auto", "bsdf:1/free"}) {
+    const auto mix = parse_mix(text);
+    ASSERT_TRUE(mix.ok()) << text;
+    const auto again = parse_mix(label(*mix));
+    ASSERT_TRUE(again.ok()) << label(*mix);
+    EXPECT_EQ(*again, *mix);
+  }
+}
+
+TEST(Mix, FaultsNameTheWord) {
+  const std::pair<const char*, const char*> faults[] = {
+      {"sa/lens=plane", "'plane'"},          {"sa/lens=", "lens=point or lens=line"},
+      {"sa/lens=line/balance", "'balance'"}, {"sa/balance/power", "'power'"},
+      {"sa/", "unknown combination"},        {"sa/balance/", "after the combination"},
+      {"auto/lens=line", "'auto'"}};
+  for (const auto& [text, message] : faults) {
+    const auto mix = parse_mix(text);
+    ASSERT_FALSE(mix.ok()) << text;
+    EXPECT_THAT(message_of(mix.status()), HasSubstr(message)) << text;
+  }
+}
+
+}  // namespace
+}  // namespace penumbra
