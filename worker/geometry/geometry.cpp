@@ -1,12 +1,14 @@
 #include "worker/geometry/geometry.h"
 
 #include <chrono>
+#include <mutex>
+#include <new>
 
 #include "proto/status.h"
 #include "worker/geometry/bow_tie_walk.h"
 #include "worker/geometry/embree_scene.h"
-#include "worker/geometry/line_query.h"
 #include "worker/geometry/line_fan.h"
+#include "worker/geometry/line_query.h"
 #include "worker/geometry/shaft_list.h"
 
 namespace penumbra {
@@ -30,10 +32,37 @@ void all_visible(std::span<const LineQuery> queries, std::vector<IntervalSet>& o
 
 struct Geometry::Parts {
   std::unique_ptr<EmbreeScene> embree;
-  LineBvh lines;
   LinePath path = widest_line_path();
   BuildTimes times;
+
+  /// The line hierarchy, built at the first call: a job without lines does not pay for it.
+  const LineBvh& lines() {
+    std::call_once(lines_once, [this] { build_lines(); });
+    return line_bvh;
+  }
+
+  // What it is built from; empty once it is.
+  std::vector<MeshInput> meshes;
+  std::vector<ObjectInput> objects;
+  std::vector<InstanceInput> instances;
+  int threads = 1;
+
+ private:
+  void build_lines();
+
+  std::once_flag lines_once;
+  LineBvh line_bvh;
 };
+
+void Geometry::Parts::build_lines() {
+  const auto start = std::chrono::steady_clock::now();
+  absl::StatusOr<LineBvh> built = build_line_bvh(meshes, objects, instances, threads);
+  // Geometry::build() has checked the input: only memory is left to fail.
+  if (!built.ok()) throw std::bad_alloc();
+  line_bvh = *std::move(built);
+  meshes = {}, objects = {}, instances = {};
+  times.line_bvh_seconds = seconds_since(start);
+}
 
 Geometry::Geometry() : parts_(std::make_unique<Parts>()) {}
 Geometry::Geometry(Geometry&&) noexcept = default;
@@ -45,13 +74,20 @@ absl::StatusOr<Geometry> Geometry::build(std::span<const MeshInput> meshes,
                                          std::span<const InstanceInput> instances, int threads) {
   PENUMBRA_CHECK(threads > 0);
   Geometry geometry;
-  auto start = std::chrono::steady_clock::now();
-  ASSIGN_OR_RETURN(geometry.parts_->embree, EmbreeScene::build(meshes, objects, instances, threads));
-  geometry.parts_->times.embree_seconds = seconds_since(start);
-  start = std::chrono::steady_clock::now();
-  ASSIGN_OR_RETURN(geometry.parts_->lines, build_line_bvh(meshes, objects, instances, threads));
-  geometry.parts_->times.line_bvh_seconds = seconds_since(start);
+  RETURN_IF_ERROR(check_line_input(meshes, instances));
+  Parts& parts = *geometry.parts_;
+  const auto start = std::chrono::steady_clock::now();
+  ASSIGN_OR_RETURN(parts.embree, EmbreeScene::build(meshes, objects, instances, threads));
+  parts.times.embree_seconds = seconds_since(start);
+  parts.meshes.assign(meshes.begin(), meshes.end());
+  parts.objects.assign(objects.begin(), objects.end());
+  parts.instances.assign(instances.begin(), instances.end());
+  parts.threads = threads;
   return geometry;
+}
+
+void Geometry::prepare_lines() const {
+  parts_->lines();
 }
 
 std::optional<Hit> Geometry::intersect(const Ray& ray, QueryCounters& counters) const {
@@ -76,11 +112,11 @@ bool Geometry::has_alpha() const {
 
 void Geometry::visible(std::span<const LineQuery> queries, std::vector<IntervalSet>& out,
                        QueryCounters& counters) const {
-  visible_lines(parts_->lines, parts_->path, queries, out, counters);
+  visible_lines(parts_->lines(), parts_->path, queries, out, counters);
 }
 
 void Geometry::enter(const ShaftQuery& query, Shaft& shaft, QueryCounters& counters) const {
-  shaft.content_ = enter_shaft(parts_->lines, parts_->path, query, *shaft.parts_, counters);
+  shaft.content_ = enter_shaft(parts_->lines(), parts_->path, query, *shaft.parts_, counters);
 }
 
 void Geometry::visible(const Shaft& shaft, std::span<const LineQuery> queries, std::vector<IntervalSet>& out,
@@ -93,7 +129,7 @@ void Geometry::visible(const Shaft& shaft, std::span<const LineQuery> queries, s
       for (IntervalSet& set : out) set.clear();
       return;
     case ShaftContent::kFew:
-      return visible_in_list(parts_->lines, parts_->path, shaft.parts_->list, queries, out, counters);
+      return visible_in_list(parts_->lines(), parts_->path, shaft.parts_->list, queries, out, counters);
     case ShaftContent::kMany:
       return visible(queries, out, counters);
   }
@@ -115,8 +151,8 @@ Geometry::BuildTimes Geometry::build_times() const {
 }
 
 double Geometry::line_bytes_per_triangle() const {
-  const size_t triangles = parts_->lines.triangles();
-  return triangles == 0 ? 0 : static_cast<double>(parts_->lines.bytes()) / static_cast<double>(triangles);
+  const size_t triangles = parts_->lines().triangles();
+  return triangles == 0 ? 0 : static_cast<double>(parts_->lines().bytes()) / static_cast<double>(triangles);
 }
 
 void Geometry::bounds(Vec3f& lo, Vec3f& hi) const {

@@ -1,6 +1,7 @@
 #pragma once
 // The scene's surfaces as the renderer asks for them: nearest hit, shadow segment, line query. The only
-// room that knows Embree (embree_scene.cpp traces with it, bvh_builder.cpp builds with it, nothing else does).
+// room that knows Embree (embree_scene.cpp traces with it, bvh_builder.cpp builds with it, nothing else
+// does).
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -86,13 +87,18 @@ struct ShaftQuery;
 /// Immutable after build; every query is const and may run on any number of threads.
 class Geometry {
  public:
-  /// `meshes` not covered by an object are in the world. Builds on `threads` threads.
+  /// `meshes` not covered by an object are in the world. Builds on `threads` threads: what rays need at once,
+  /// what lines and shafts need when one is first asked for, or by prepare_lines().
   static absl::StatusOr<Geometry> build(std::span<const MeshInput> meshes,
                                         std::span<const ObjectInput> objects,
                                         std::span<const InstanceInput> instances, int threads);
   Geometry(Geometry&&) noexcept;
   Geometry& operator=(Geometry&&) noexcept;
   ~Geometry();
+
+  /// Builds what visible() and enter() walk, unless that is done: for a caller whose clock must not pay for
+  /// it. Any number of threads may call; they wait for one that builds. std::bad_alloc if memory runs out.
+  void prepare_lines() const;
 
   /// Nearest hit in (near, far].
   std::optional<Hit> intersect(const Ray& ray, QueryCounters& counters) const;
@@ -127,6 +133,7 @@ class Geometry {
   struct BuildTimes {
     double embree_seconds = 0, line_bvh_seconds = 0;
   };
+  /// The line BVH's are 0 until it is built.
   BuildTimes build_times() const;
   /// Of the line BVH, per triangle.
   double line_bytes_per_triangle() const;

@@ -68,6 +68,11 @@ class Flattener {
   void root(const BuiltNode& node, const Box& bounds) {
     for (int k = 0; k < 3; ++k) tree_.centre[k] = 0.5 * (double{bounds.lo[k]} + bounds.hi[k]);
     tree_.radius = 0.5 * (Vec3d(bounds.hi) - Vec3d(bounds.lo)).length();
+    // Counted first: arrays that grow are copied, and their pages cleared, once more than they need to be.
+    size_t nodes = node.leaf ? 1 : 0, leaves = 0;
+    count(node, nodes, leaves);
+    tree_.nodes.reserve(nodes);
+    if (triangles_ != nullptr) tree_.blocks.reserve(leaves);
     if (!node.leaf) {
       inner(static_cast<const BuiltInner&>(node), 1);
       return;
@@ -96,6 +101,13 @@ class Flattener {
     for (uint32_t lane = built.count; lane < kWidth; ++lane) node.child[lane] = 0;
     tree_.nodes[index] = node;
     return index;
+  }
+
+  static void count(const BuiltNode& node, size_t& nodes, size_t& leaves) {
+    ++(node.leaf ? leaves : nodes);
+    if (node.leaf) return;
+    const auto& built = static_cast<const BuiltInner&>(node);
+    for (uint32_t lane = 0; lane < built.count; ++lane) count(*built.children[lane], nodes, leaves);
   }
 
   uint32_t leaf(const BuiltLeaf& built) {
@@ -181,8 +193,6 @@ absl::Status place_instances(LineBvh& bvh, std::span<const InstanceInput> instan
   for (size_t i = 0; i < instances.size(); ++i) {
     PENUMBRA_CHECK(instances[i].object < bvh.objects.size());
     const Matrix& m = instances[i].to_world;
-    const double det = m.determinant();
-    if (!std::isfinite(det) || det == 0) return invalid_input("instance {}: its transform is singular", i);
     bvh.instances[i] = {instances[i].object, m.inverse()};
     const LineTree& tree = bvh.objects[instances[i].object];
     if (tree.nodes.empty()) continue;
@@ -204,9 +214,22 @@ size_t bytes_of(const LineTree& tree) {
 
 }  // namespace
 
+absl::Status check_line_input(std::span<const MeshInput> meshes, std::span<const InstanceInput> instances) {
+  uint64_t triangles = 0;
+  for (const MeshInput& m : meshes) triangles += m.mesh->triangles();
+  if (triangles >= kNone)
+    return make_status(absl::StatusCode::kResourceExhausted, "more than {} triangles in one scene", kNone);
+  for (size_t i = 0; i < instances.size(); ++i) {
+    const double det = instances[i].to_world.determinant();
+    if (!std::isfinite(det) || det == 0) return invalid_input("instance {}: its transform is singular", i);
+  }
+  return absl::OkStatus();
+}
+
 absl::StatusOr<LineBvh> build_line_bvh(std::span<const MeshInput> meshes,
                                        std::span<const ObjectInput> objects,
                                        std::span<const InstanceInput> instances, int threads) {
+  RETURN_IF_ERROR(check_line_input(meshes, instances));
   const TreeBuilder builder(threads);
   static std::atomic<uint64_t> built{0};
   LineBvh bvh;
@@ -215,9 +238,6 @@ absl::StatusOr<LineBvh> build_line_bvh(std::span<const MeshInput> meshes,
   for (const MeshInput& m : meshes) {
     bvh.first_triangle.push_back(static_cast<uint32_t>(first));
     first += m.mesh->triangles();
-    if (first >= kNone) {
-      return make_status(absl::StatusCode::kResourceExhausted, "more than {} triangles in one scene", kNone);
-    }
   }
   const auto build_over = [&](LineTree& tree, auto belongs) {
     TriangleList list;

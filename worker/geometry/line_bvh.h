@@ -76,8 +76,11 @@ inline Excluded excluded_in(const LineBvh& bvh, const LineQuery& query, uint32_t
   return {bvh.first_triangle[query.light.mesh] + query.light.primitive, query.light_primitives};
 }
 
-/// Errors: InvalidArgument for an instance whose transform is singular or not finite, ResourceExhausted
-/// beyond 2^32 triangles.
+/// InvalidArgument for an instance whose transform is singular or not finite, ResourceExhausted beyond 2^32
+/// triangles.
+absl::Status check_line_input(std::span<const MeshInput> meshes, std::span<const InstanceInput> instances);
+
+/// Errors: those of check_line_input(), ResourceExhausted where memory runs out.
 absl::StatusOr<LineBvh> build_line_bvh(std::span<const MeshInput> meshes,
                                        std::span<const ObjectInput> objects,
                                        std::span<const InstanceInput> instances, int threads);

@@ -85,25 +85,27 @@ End end_of(const LineFan& fan, const Crossing& e, const Vec3d& q, const Vec3d& q
 
 }  // namespace
 
-LineFan make_fan(const Vec3d& x, const Vec3d& a, const Vec3d& b, double reach) {
-  LineFan fan;
+void set_up(LineFan& fan, const Vec3d& x, const Vec3d& a, const Vec3d& b, double reach) {
+  fan.degenerate = true;
+  fan.light = fan.near = fan.error = 0;
+  fan.slack = 0;
   fan.x = Vec3f(x);
   fan.x_exact = x;
   fan.a = a;
   fan.b = b;
   Vec3d n = a.cross(b);
   const double n_size = largest(n);
-  if (!(n_size >= std::numeric_limits<double>::min()) || std::isinf(n_size)) return fan;
+  if (!(n_size >= std::numeric_limits<double>::min()) || std::isinf(n_size)) return;
   n *= inverse_power_of_two(n_size);
   const Vec3d chord = a - b;
   Vec3d beta = n.cross(a), t = n.cross(chord);
   const double size = std::max(largest(beta), largest(t));
-  if (!(size >= std::numeric_limits<double>::min())) return fan;
+  if (!(size >= std::numeric_limits<double>::min())) return;
   const double scale = inverse_power_of_two(size);
   beta *= scale;
   t *= scale;
   const double light = t.dot(a);  // = t.dot(b) = |N|²
-  if (!(light > 0)) return fan;
+  if (!(light > 0)) return;
 
   // |t(q)| carries at most (3 roundings of the products and sums + 1 of t's coefficients + 1 of q) u |t| |q|.
   const double error_per_length = 5 * kFloatRoundoff * (std::abs(t.x) + std::abs(t.y) + std::abs(t.z));
@@ -127,12 +129,12 @@ LineFan make_fan(const Vec3d& x, const Vec3d& a, const Vec3d& b, double reach) {
   // `reach`, a few u / sin(x's angle with the chord), and light / (|t| |a|) is at most that sine's size.
   fan.slack = 64 * kFloatRoundoff * reach * std::max(1., largest(t) * farther_end / light);
   fan.degenerate = false;
-  return fan;
 }
 
 bool has_area(const Vec3d& a, const Vec3d& b) {
   // With |N| above 2^-20 of the longer side's square, none of make_fan's conditions fails by rounding: N·N
-  // comes out within 2^-53 |A-B| |A| / |N| < 2^-31 of itself. Floats' differences neither under- nor overflow.
+  // comes out within 2^-53 |A-B| |A| / |N| < 2^-31 of itself. Floats' differences neither under- nor
+  // overflow.
   const double longer = std::max(largest(a), largest(b));
   if (largest(a.cross(b)) > 0x1p-20 * longer * longer) return true;
   return !make_fan(Vec3d(0, 0, 0), a, b, 0).degenerate;

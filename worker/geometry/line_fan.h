@@ -23,19 +23,24 @@ constexpr double kFloatRoundoff = 0x1p-24;
 struct LineFan {
   // Single precision: what vectors compute with.
   Vec3f x, g, beta, t;  ///< functionals of p - x
-  float light = 0;      ///< t at which an occluder is no longer in front of the light
-  float near = 0;       ///< |t| below this is decided in double precision (see make_fan)
-  float error = 0;      ///< bound of the rounding errors of where an edge crosses the plane
+  float light;          ///< t at which an occluder is no longer in front of the light
+  float near;           ///< |t| below this is decided in double precision (see make_fan)
+  float error;          ///< bound of the rounding errors of where an edge crosses the plane
 
   // Double precision: the same fan for the few edges that need it.
   Vec3d x_exact, a, b;  ///< a, b relative to x
   Vec3d g_exact, beta_exact, t_exact;
-  double slack = 0;        ///< length by which boxes are widened, so that no rounding of the above is culled
-  bool degenerate = true;  ///< x, a and b are collinear: the fan has no area
+  double slack;     ///< length by which boxes are widened, so that no rounding of the above is culled
+  bool degenerate;  ///< x, a and b are collinear: the fan has no area
 };
 
 /// Fan of (x, x+a, x+b) in the coordinates of one tree. `reach`: no vertex is farther from x than this.
-LineFan make_fan(const Vec3d& x, const Vec3d& a, const Vec3d& b, double reach);
+void set_up(LineFan& fan, const Vec3d& x, const Vec3d& a, const Vec3d& b, double reach);
+inline LineFan make_fan(const Vec3d& x, const Vec3d& a, const Vec3d& b, double reach) {
+  LineFan fan;
+  set_up(fan, x, a, b, reach);
+  return fan;
+}
 
 /// !make_fan(x, a, b, …).degenerate, for less.
 bool has_area(const Vec3d& a, const Vec3d& b);

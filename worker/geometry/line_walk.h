@@ -1,6 +1,9 @@
 #pragma once
-// The walk of a line query through the hierarchy, sixteen boxes or triangles at a time. Included by one file
+// The walk of line queries through the hierarchy, sixteen boxes or triangles at a time. Included by one file
 // per instruction set.
+//
+// The lines of one call take turns, a step each: while the others work, memory fetches what the next step
+// needs. No line sees anything of another one but the guess which block to try first.
 #include "worker/geometry/fan_block.h"
 #include "worker/geometry/fan_boxes.h"
 #include "worker/geometry/line_query.h"
@@ -9,132 +12,227 @@
 namespace penumbra {
 namespace {
 
-class LineWalk {
- public:
-  LineWalk(const LineBvh& bvh, LineWorkspace& workspace, QueryCounters& counters)
-      : bvh_(bvh), workspace_(workspace), counters_(counters), visible_(workspace) {}
+template <class T>
+void prefetch(const T& object) {
+  for (size_t at = 0; at < sizeof(T); at += 64)
+    _mm_prefetch(reinterpret_cast<const char*>(&object) + at, _MM_HINT_T0);
+}
 
-  void run(const LineQuery& query, IntervalSet& out) {
-    query_ = &query;
-    visible_.reset();
-    widest_ = 0;
-    const Vec3d x(query.x), a = Vec3d(query.a) - x, b = Vec3d(query.b) - x;
-    const LineTree& frame = bvh_.world.nodes.empty() ? bvh_.instance_tree : bvh_.world;
-    const LineFan fan = make_fan(x, a, b, frame.nodes.empty() ? 0 : frame.reach(x));
-    out.clear();
-    if (fan.degenerate) return;  // a chord seen end on has no width to be seen by
-    if (!bvh_.world.nodes.empty()) {
-      triangles(bvh_.world, fan, excluded_in(bvh_, query, kNone), workspace_.stack.data(),
-                workspace_.leaves.data());
-    }
-    if (!bvh_.instance_tree.nodes.empty() && !visible_.empty()) placed_objects(x, a, b);
-    // A neighbour of a lit point is mostly lit: then there is nothing to try first.
-    workspace_.occluder_tree = widest_ > 0 && occluder_world_ ? bvh_.id : 0;
-    workspace_.occluder = occluder_;
-    for (int i = 0; i < visible_.size(); ++i) out.append(visible_[i].lo, visible_[i].hi);
+/// What lines of one call share: memory that no line needs from one step to the next.
+struct WalkContext {
+  WalkContext(const LineBvh& b, QueryCounters& c)
+      : bvh(b), workspace(line_workspace(b.depth())), counters(c) {}
+  const LineBvh& bvh;
+  LineWorkspace& workspace;
+  QueryCounters& counters;
+  HiddenIntervals hidden;
+};
+
+/// A line's way through one tree: two nodes at a time, narrowed to what is still visible.
+class TreeWalk {
+ public:
+  void start(const LineTree& tree, const LineFan& fan, const VisibleSet& visible, uint32_t* stack) {
+    tree_ = &tree;
+    boxes_.set_up(fan, tree);
+    base_ = stack_ = stack;
+    *stack_++ = 0;
+    narrow(visible);
+  }
+
+  void narrow(const VisibleSet& visible) {
+    boxes_.narrow(visible.hull());
+    boxes_.skip(visible.widest_gap());
+  }
+  bool done() const { return stack_ == base_; }
+  uint32_t* free_stack() const { return stack_; }
+
+  /// Visits nodes; returns how many leaves they add.
+  int step(uint32_t* leaves, QueryCounters& counters) {
+    // Two nodes at a time: their tests overlap where one alone would wait for its loads. Without a second
+    // one the first is tested twice, and the second result dropped.
+    const bool pair = stack_ - base_ > 1;
+    const LineNode& node0 = tree_->nodes[*--stack_];
+    const LineNode& node1 = tree_->nodes[stack_[pair ? -1 : 0]];
+    stack_ -= pair;
+    counters.nodes_visited += 1 + pair;
+    const uint32_t met0 = boxes_.meeting(node0), met1 = pair ? boxes_.meeting(node1) : 0;
+    const int found = push(node0, met0, leaves, 0);
+    return push(node1, met1, leaves, found);
+  }
+
+  /// Asks memory for the nodes of the next step.
+  void prefetch_nodes() const {
+    if (stack_ - base_ > 0) prefetch(tree_->nodes[stack_[-1]]);
+    if (stack_ - base_ > 1) prefetch(tree_->nodes[stack_[-2]]);
   }
 
  private:
-  void placed_objects(const Vec3d& x, const Vec3d& a, const Vec3d& b) {
-    const LineFan fan = make_fan(x, a, b, bvh_.instance_tree.reach(x));
-    walk(bvh_.instance_tree, fan, workspace_.stack.data(), workspace_.leaves.data(),
-         [&](const uint32_t* found, int count, uint32_t* stack, uint32_t* leaves) {
-           for (int i = 0; i < count && !visible_.empty(); ++i) {
-             const LineInstance& placed = bvh_.instances[found[i]];
-             const LineTree& tree = bvh_.objects[placed.tree];
-             Vec3d ox, oa, ob;
-             placed.to_object.multVecMatrix(x, ox);
-             placed.to_object.multDirMatrix(a, oa);
-             placed.to_object.multDirMatrix(b, ob);
-             const LineFan object_fan = make_fan(ox, oa, ob, tree.reach(ox));
-             if (object_fan.degenerate) continue;
-             triangles(tree, object_fan, excluded_in(bvh_, *query_, found[i]), stack, leaves);
-           }
-         });
-  }
-
-  void triangles(const LineTree& tree, const LineFan& fan, const Excluded& excluded, uint32_t* stack_base,
-                 uint32_t* leaves_base) {
-    const FanBlock fan_block(fan);
-    const bool world = &tree == &bvh_.world;
-    if (world && workspace_.occluder_tree == bvh_.id) {
-      test(fan_block, tree, {&workspace_.occluder, 1}, excluded, visible_.hull());
-      if (visible_.empty()) return;
-    }
-    walk(tree, fan, stack_base, leaves_base, [&](const uint32_t* found, int count, uint32_t*, uint32_t*) {
-      test(fan_block, tree, {found, static_cast<size_t>(count)}, excluded, visible_.hull());
-    });
-  }
-
-  /// Takes from the visible set what some blocks hide of it.
-  void test(const FanBlock& fan_block, const LineTree& tree, std::span<const uint32_t> blocks,
-            const Excluded& excluded, Interval hull) {
-    for (const uint32_t block : blocks) {
-      if (fan_block.hidden(tree.blocks[block], excluded, hull.lo, hull.hi, hidden_, widest_)) {
-        occluder_ = block;
-        occluder_world_ = &tree == &bvh_.world;
-      }
-    }
-    counters_.triangles_tested += kWidth * blocks.size();
-    fan_block.settle(hidden_, hull.lo, hull.hi);
-    if (!hidden_.empty() && hidden_.flush(visible_)) ++version_;
-  }
-
-  /// Visits the leaves that the visible part of the fan meets. `use` may narrow it, and gets the free parts
-  /// of the two buffers for a walk of its own.
-  template <class Use>
-  void walk(const LineTree& tree, const LineFan& fan, uint32_t* stack_base, uint32_t* leaves, Use use) {
-    FanBoxes boxes(fan, tree);
-    uint64_t version = version_;
-    boxes.narrow(visible_.hull());
-    boxes.skip(visible_.widest_gap());
-    uint32_t* stack = stack_base;
-    *stack++ = 0;
-    while (stack != stack_base) {
-      // Two nodes at a time: their tests overlap where one alone would wait for its loads. Without a second
-      // one the first is tested twice, and the second result dropped.
-      const bool pair = stack - stack_base > 1;
-      const LineNode& node0 = tree.nodes[*--stack];
-      const LineNode& node1 = tree.nodes[stack[pair ? -1 : 0]];
-      stack -= pair;
-      counters_.nodes_visited += 1 + pair;
-      const uint32_t met0 = boxes.meeting(node0), met1 = pair ? boxes.meeting(node1) : 0;
-      const int found = push(node0, met0, stack, leaves, 0);
-      const int all = push(node1, met1, stack, leaves, found);
-      if (all == 0) continue;
-      use(leaves, all, stack, leaves + 2 * kWidth);
-      if (version == version_) continue;
-      if (visible_.empty()) return;
-      version = version_;
-      boxes.narrow(visible_.hull());
-      boxes.skip(visible_.widest_gap());
-    }
-  }
-
   /// Inner nodes go on the stack, leaves behind the `found` ones; returns how many of these there are.
-  static int push(const LineNode& node, uint32_t met, uint32_t*& stack, uint32_t* leaves, int found) {
-    Simd::compress(stack, met & ~node.leaves, node.child);
-    stack += std::popcount(met & ~node.leaves);
+  int push(const LineNode& node, uint32_t met, uint32_t* leaves, int found) {
+    Simd::compress(stack_, met & ~node.leaves, node.child);
+    stack_ += std::popcount(met & ~node.leaves);
     Simd::compress(leaves + found, met & node.leaves, node.child);
     return found + std::popcount(met & node.leaves);
   }
 
-  const LineBvh& bvh_;
-  LineWorkspace& workspace_;
-  QueryCounters& counters_;
-  const LineQuery* query_ = nullptr;
+  const LineTree* tree_;
+  FanBoxes boxes_;
+  uint32_t *base_, *stack_;
+};
+
+/// One line on its way.
+class LineWalk {
+ public:
+  void start(WalkContext& context, LineBuffers& buffers, const LineQuery& query) {
+    context_ = &context;
+    buffers_ = &buffers;
+    query_ = &query;
+    visible_.reset(buffers);
+    found_ = 0;
+    widest_ = 0;
+    walking_ = false;
+    const LineTree& frame = bvh().world.nodes.empty() ? bvh().instance_tree : bvh().world;
+    x_ = Vec3d(query.x), a_ = Vec3d(query.a) - x_, b_ = Vec3d(query.b) - x_;
+    penumbra::set_up(fan_, x_, a_, b_, frame.nodes.empty() ? 0 : frame.reach(x_));
+    in_world_ = !fan_.degenerate && !bvh().world.nodes.empty();
+    if (!in_world_) return;
+    excluded_ = excluded_in(bvh(), query, kNone);
+    block_.set_up(fan_);
+    if (context.workspace.occluder_tree != bvh().id) return;
+    buffers.leaves[0] = context.workspace.occluder;
+    found_ = 1;
+  }
+
+  /// A step through the world: the leaves found last, then the next nodes. False: that was all.
+  bool step() {
+    if (!in_world_) return false;
+    if (found_ != 0 && test(block_, bvh().world, buffers_->leaves.data(), found_, excluded_)) {
+      if (visible_.empty()) return false;
+      if (walking_) walk_.narrow(visible_);
+    }
+    if (!walking_) walk_.start(bvh().world, fan_, visible_, buffers_->stack.data());
+    walking_ = true;
+    if (walk_.done()) return false;
+    found_ = walk_.step(buffers_->leaves.data(), context_->counters);
+    return true;
+  }
+
+  /// Asks memory for what the next step needs.
+  void prefetch_next() const {
+    for (int i = 0; i < found_; ++i) prefetch(bvh().world.blocks[buffers_->leaves[i]]);
+    walk_.prefetch_nodes();
+  }
+
+  /// After the last step.
+  void finish(IntervalSet& out) {
+    out.clear();
+    if (fan_.degenerate) return;  // a chord seen end on has no width to be seen by
+    if (!bvh().instance_tree.nodes.empty() && !visible_.empty()) placed_objects();
+    // A neighbour of a lit point is mostly lit: then there is nothing to try first.
+    context_->workspace.occluder_tree = widest_ > 0 && occluder_world_ ? bvh().id : 0;
+    context_->workspace.occluder = occluder_;
+    visible_.append_to(out);
+  }
+
+ private:
+  const LineBvh& bvh() const { return context_->bvh; }
+
+  void placed_objects() {
+    const LineFan fan = make_fan(x_, a_, b_, bvh().instance_tree.reach(x_));
+    TreeWalk walk;
+    walk.start(bvh().instance_tree, fan, visible_, buffers_->stack.data());
+    while (!walk.done()) {
+      const int found = walk.step(buffers_->leaves.data(), context_->counters);
+      bool changed = false;
+      for (int i = 0; i < found; ++i) {
+        changed |=
+            placed_object(buffers_->leaves[i], walk.free_stack(), buffers_->leaves.data() + 2 * kWidth);
+        if (visible_.empty()) return;
+      }
+      if (changed) walk.narrow(visible_);
+    }
+  }
+
+  bool placed_object(uint32_t instance, uint32_t* stack, uint32_t* leaves) {
+    const LineInstance& placed = bvh().instances[instance];
+    const LineTree& tree = bvh().objects[placed.tree];
+    Vec3d x, a, b;
+    placed.to_object.multVecMatrix(x_, x);
+    placed.to_object.multDirMatrix(a_, a);
+    placed.to_object.multDirMatrix(b_, b);
+    const LineFan fan = make_fan(x, a, b, tree.reach(x));
+    if (fan.degenerate) return false;
+    FanBlock fan_block;
+    fan_block.set_up(fan);
+    const Excluded excluded = excluded_in(bvh(), *query_, instance);
+    TreeWalk walk;
+    walk.start(tree, fan, visible_, stack);
+    bool changed = false;
+    while (!walk.done()) {
+      const int found = walk.step(leaves, context_->counters);
+      if (found == 0 || !test(fan_block, tree, leaves, found, excluded)) continue;
+      changed = true;
+      if (visible_.empty()) return true;
+      walk.narrow(visible_);
+    }
+    return changed;
+  }
+
+  /// Takes from the visible set what some blocks hide of it. True if that changed it.
+  bool test(const FanBlock& fan_block, const LineTree& tree, const uint32_t* blocks, int count,
+            const Excluded& excluded) {
+    const Interval hull = visible_.hull();
+    HiddenIntervals& hidden = context_->hidden;
+    for (int i = 0; i < count; ++i) {
+      if (fan_block.hidden(tree.blocks[blocks[i]], excluded, hull.lo, hull.hi, hidden, widest_)) {
+        occluder_ = blocks[i];
+        occluder_world_ = &tree == &bvh().world;
+      }
+    }
+    context_->counters.triangles_tested += static_cast<uint64_t>(kWidth * count);
+    fan_block.settle(hidden, hull.lo, hull.hi);
+    return !hidden.empty() && hidden.flush(visible_);
+  }
+
+  WalkContext* context_;
+  LineBuffers* buffers_;
+  const LineQuery* query_;
   VisibleSet visible_;
-  HiddenIntervals hidden_;
-  uint64_t version_ = 0;  ///< of the visible set
-  float widest_ = 0;      ///< what the best occluder of this query hides
+  Vec3d x_, a_, b_;
+  LineFan fan_;  ///< in the world, as are the next three
+  Excluded excluded_;
+  FanBlock block_;
+  TreeWalk walk_;
+  bool in_world_, walking_;  ///< the world has something to meet; the walk has begun
+  int found_;                ///< leaves to test in the next step
+  float widest_;             ///< what the best occluder of this query hides
   uint32_t occluder_ = 0;
   bool occluder_world_ = false;
 };
 
 void visible_vector(const LineBvh& bvh, std::span<const LineQuery> queries, std::vector<IntervalSet>& out,
                     QueryCounters& counters) {
-  LineWalk walk(bvh, line_workspace(bvh.depth()), counters);
-  for (size_t i = 0; i < queries.size(); ++i) walk.run(queries[i], out[i]);
+  constexpr size_t kTogether = LineWorkspace::kTogether;
+  WalkContext context(bvh, counters);
+  LineWalk lines[kTogether];
+  const bool fetch = bvh.world.nodes.size() > 1;
+  for (size_t first = 0; first < queries.size(); first += kTogether) {
+    const size_t count = std::min(kTogether, queries.size() - first);
+    uint32_t going = (1u << count) - 1;
+    for (size_t i = 0; i < count; ++i)
+      lines[i].start(context, context.workspace.lines[i], queries[first + i]);
+    while (going != 0) {
+      for (uint32_t left = going; left != 0; left &= left - 1) {
+        const auto i = static_cast<uint32_t>(std::countr_zero(left));
+        if (lines[i].step()) {
+          if (fetch) lines[i].prefetch_next();
+          continue;
+        }
+        lines[i].finish(out[first + i]);
+        going &= ~(1u << i);
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -8,15 +8,21 @@
 
 namespace penumbra {
 
-/// What one thread keeps between queries: memory, and a guess that changes no answer.
-struct LineWorkspace {
+/// Memory of one line on its way.
+struct LineBuffers {
   AlignedVector<uint32_t> stack, leaves;  ///< nodes still to visit; leaves found and not yet tested
   AlignedVector<float> lo, hi;            ///< visible intervals in no order; see VisibleSet
+
+  void grow_set();
+};
+
+/// What one thread keeps between queries: memory, and a guess that changes no answer.
+struct LineWorkspace {
+  static constexpr int kTogether = 4;  ///< lines that are on their way at once
+  LineBuffers lines[kTogether];
   /// The block of the last query that hid most of its chord: the first to try for the next one.
   uint64_t occluder_tree = 0;
   uint32_t occluder = 0;
-
-  void grow_set();
 };
 
 /// This thread's workspace, with room for trees of the given depth.

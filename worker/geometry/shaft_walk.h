@@ -135,10 +135,10 @@ class ShaftWalk {
     LineWorkspace& workspace = line_workspace(bvh_.depth());
     // Placed objects are not looked into: where one may stand in the way, lines are asked singly.
     if (!bvh_.instance_tree.nodes.empty()) {
-      find_leaves(bvh_.instance_tree, workspace.stack.data());
+      find_leaves(bvh_.instance_tree, workspace.lines[0].stack.data());
       if (leaf_count_ != 0) return ShaftContent::kMany;
     }
-    find_leaves(bvh_.world, workspace.stack.data());
+    find_leaves(bvh_.world, workspace.lines[0].stack.data());
     if (leaf_count_ > kMostLeaves) return ShaftContent::kMany;
     for (int i = 0; i < leaf_count_; ++i) {
       if (block_enters(leaves_[i])) continue;
@@ -224,15 +224,16 @@ class ShaftWalk {
 class ListLines {
  public:
   ListLines(const LineBvh& bvh, const ShaftList& list, QueryCounters& counters)
-      : bvh_(bvh), list_(list), counters_(counters), visible_(line_workspace(bvh.depth())) {}
+      : bvh_(bvh), list_(list), counters_(counters), buffers_(line_workspace(bvh.depth()).lines[0]) {}
 
   void run(const LineQuery& query, IntervalSet& out) {
     out.clear();
     const Vec3d x(query.x);
     const LineFan fan = make_fan(x, Vec3d(query.a) - x, Vec3d(query.b) - x, bvh_.world.reach(x));
     if (fan.degenerate) return;
-    visible_.reset();
-    const FanBlock fan_block(fan);
+    visible_.reset(buffers_);
+    FanBlock fan_block;
+    fan_block.set_up(fan);
     for (const TriangleBlock& block : list_.blocks()) {
       const Interval hull = visible_.hull();
       float widest = 0;
@@ -243,13 +244,14 @@ class ListLines {
       if (!hidden_.empty()) hidden_.flush(visible_);
       if (visible_.empty()) return;
     }
-    for (int i = 0; i < visible_.size(); ++i) out.append(visible_[i].lo, visible_[i].hi);
+    visible_.append_to(out);
   }
 
  private:
   const LineBvh& bvh_;
   const ShaftList& list_;
   QueryCounters& counters_;
+  LineBuffers& buffers_;
   VisibleSet visible_;
   HiddenIntervals hidden_;
 };

@@ -9,6 +9,7 @@
 #include "worker/render/calibration.h"
 #include "worker/render/integrand.h"
 #include "worker/render/mix_run.h"
+#include "worker/strategies/line_need.h"
 
 namespace penumbra {
 namespace {
@@ -99,6 +100,9 @@ bool run_pilot(std::vector<std::unique_ptr<MixRun>>& runs, const JobSpec& job, d
 TaskOutcome render_tile(const Scene& scene, const JobSpec& job, const TileTask& task,
                         const std::atomic<bool>& cancel) {
   PENUMBRA_CHECK(task.passes.size() == job.mixes.size());
+  // Before any clock: what lines walk is part of the load, of jobs that have lines.
+  for (const Mix& mix : job.mixes)
+    if (needs_line_hierarchy(mix, scene.lights)) scene.geometry->prepare_lines();
   if (job.probe && job.probe->kind == Probe::Kind::kIntegrand)
     return render_integrand(scene, job, task, cancel);
   TaskOutcome outcome;

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <limits>
 
+#include "worker/strategies/line_need.h"
+
 namespace penumbra {
 namespace {
 
-/// Fewer shadow rays than these cost less than a shaft (README: measured).
-constexpr int kLeastRays = 16;
 /// After n shafts in a row that held too much to list, the next 2^n points do without: near such a point are
 /// more of its kind. Lines are the same bits either way.
 constexpr int kLongestPause = 6;
@@ -93,12 +93,12 @@ bool LightSight::find_region(const ShadingPoint& point, const AreaEmitter& emitt
   return true;
 }
 
-/// Whether to enter a shaft. For rays and regions a pure function of the mix: they are traced by Embree where a shaft
-/// does not settle them, whose roundings are not the shaft's, and an image must not depend on what was asked
-/// before.
+/// Whether to enter a shaft. For rays and regions a pure function of the mix: they are traced by Embree where
+/// a shaft does not settle them, whose roundings are not the shaft's, and an image must not depend on what
+/// was asked before.
 bool LightSight::worth(Light& light, const VisibilityWork& work) {
   if (work.region) return true;
-  if (work.lines == 0) return work.rays >= kLeastRays;
+  if (work.lines == 0) return work.rays >= kLeastShaftRays;
   if (light.pause == 0) return true;
   --light.pause;
   return false;

@@ -71,6 +71,7 @@ int run(int argc, char** argv) {
     fmt::print(stderr, "{}: {}\n", path, message_of(geometry.status()));
     return 2;
   }
+  geometry->prepare_lines();
   const LineTiming timing = time_lines(*geometry, *scene, queries, repetitions);
   if (timing.single[kAll].queries == 0) {
     fmt::print(stderr, "{}: the camera sees nothing that faces a quad light\n", path);

@@ -23,9 +23,44 @@ double median(std::vector<double>& values) {
 /// Keeps results alive: the optimiser may not drop the work.
 volatile size_t sink;
 
+/// All lines of a shading point as the renderer asks for them: a shaft first, then the lines together. After
+/// n shafts in a row that held too much to list, the next 2^n points do without (strategies: LightSight).
+class SharedLines {
+ public:
+  SharedLines(const Geometry& geometry, const BenchScene& scene)
+      : geometry_(geometry), lights_(scene.lights.size()) {
+    for (size_t i = 0; i < lights_.size(); ++i) lights_[i].polygon = scene.lights[i].polygon();
+  }
+
+  void trace(const ShadingPoint& p, std::vector<IntervalSet>& visible, QueryCounters& counters) {
+    Light& light = lights_[p.light];
+    if (light.pause > 0) {
+      --light.pause;
+      return geometry_.visible(p.lines, visible, counters);
+    }
+    geometry_.enter({p.lines[0].x, &light.polygon, p.normal}, shaft_, counters);
+    const bool failed = shaft_.content() == ShaftContent::kMany;
+    light.failures = failed ? std::min(light.failures + 1, kLongestPause) : 0;
+    light.pause = failed ? 1 << light.failures : 0;
+    geometry_.visible(shaft_, p.lines, visible, counters);
+  }
+
+ private:
+  static constexpr int kLongestPause = 6;
+  struct Light {
+    LightPolygon polygon;
+    int failures = 0, pause = 0;
+  };
+  const Geometry& geometry_;
+  std::vector<Light> lights_;
+  Shaft shaft_;
+};
+
 class Timer {
  public:
-  Timer(const Geometry& geometry, int repetitions) : geometry_(geometry), repetitions_(repetitions) {}
+  /// `shared`: how to trace the lines of one point together; null: one call without a shaft.
+  Timer(const Geometry& geometry, int repetitions, SharedLines* shared = nullptr)
+      : geometry_(geometry), repetitions_(repetitions), shared_(shared) {}
 
   /// Sums of the chunks' medians, in seconds: rays first, lines second.
   std::pair<double, double> time(const std::vector<ShadingPoint>& points) {
@@ -65,7 +100,10 @@ class Timer {
   void trace_lines(std::span<const ShadingPoint> points) {
     size_t intervals = 0;
     for (const ShadingPoint& p : points) {
-      geometry_.visible(p.lines, visible_, counters);
+      if (shared_ != nullptr)
+        shared_->trace(p, visible_, counters);
+      else
+        geometry_.visible(p.lines, visible_, counters);
       for (const IntervalSet& set : visible_) intervals += set.size();
     }
     sink = intervals;
@@ -73,6 +111,7 @@ class Timer {
 
   const Geometry& geometry_;
   int repetitions_;
+  SharedLines* shared_;
   std::vector<IntervalSet> visible_;
 };
 
@@ -114,7 +153,8 @@ LineTiming time_lines(const Geometry& geometry, const BenchScene& scene, size_t 
     t.triangles = static_cast<double>(timer.counters.triangles_tested) / traced;
   }
   const auto shared = tile_coherent_points(geometry, scene, queries / 4, 4, 11);
-  const auto [rays, lines] = Timer(geometry, repetitions).time(shared);
+  SharedLines shared_lines(geometry, scene);
+  const auto [rays, lines] = Timer(geometry, repetitions, &shared_lines).time(shared);
   const double n = 4 * static_cast<double>(shared.size());
   timing.shared_ray_ns = rays / n * 1e9;
   timing.shared_line_ns = lines / n * 1e9;

@@ -31,10 +31,13 @@ class Generator {
     const auto hit = geometry_.intersect(ray, counters_);
     if (!hit || hit->id.instance != kNone) return std::nullopt;
     const SurfacePoint surface = surface_at(*hit, ray.direction);
-    const auto& light = scene_.lights[below(static_cast<int>(scene_.lights.size()))];
+    const auto index = static_cast<size_t>(below(static_cast<int>(scene_.lights.size())));
+    const auto& light = scene_.lights[index];
     const Vec3f x = surface.offset(-ray.direction);
     if ((x - light.o).dot(light.u.cross(light.v)) <= 0) return std::nullopt;
     ShadingPoint point;
+    point.normal = surface.ng;
+    point.light = index;
     for (int i = 0; i < lines_; ++i) add_line(point, light, x, surface.ng);
     if (point.lines.size() != static_cast<size_t>(lines_)) return std::nullopt;
     return point;

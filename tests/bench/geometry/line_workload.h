@@ -2,7 +2,7 @@
 // The work that line queries are measured on: what a renderer's first bounce asks of its quad lights.
 #include <vector>
 
-#include "worker/geometry/geometry.h"
+#include "worker/geometry/shaft.h"
 
 namespace penumbra::bench {
 
@@ -17,6 +17,8 @@ struct BenchScene {
     Vec3f o, u, v;
     PrimitiveId id;
     uint32_t primitives = 0;
+
+    LightPolygon polygon() const { return LightPolygon::quad(o, u, v, id, primitives); }
   };
   std::vector<TriangleMesh> meshes;
   std::vector<ObjectInput> objects;
@@ -31,6 +33,8 @@ struct BenchScene {
 struct ShadingPoint {
   std::vector<LineQuery> lines;
   std::vector<Vec3f> points;  ///< one on each line
+  Vec3f normal{0};            ///< of the surface, on the side of x
+  size_t light = 0;           ///< into BenchScene::lights
 };
 
 /// Camera hits in 16×16 tiles drawn at random, pixel by pixel within a tile, each with `lines` random chords

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <thread>
 
 #include "tests/unit/geometry/random_scenes.h"
 
@@ -178,6 +179,28 @@ TEST(Geometry, InstancesEqualFlattened) {
   }
   EXPECT_LT(sum / 4000, 2e-6);
   EXPECT_GT(hits, 1000);
+}
+
+/// A job without lines does not pay for their hierarchy; those that have some may begin at the same time.
+TEST(Geometry, LinesAreBuiltWhenOneIsAskedFor) {
+  const TriangleMesh mesh = soup(3000, 0.2f, 31);
+  const Geometry geometry = build({{&mesh}});
+  QueryCounters counters;
+  geometry.occluded({0, 0, -3}, {0, 0, 3}, counters);
+  EXPECT_EQ(geometry.build_times().line_bvh_seconds, 0);
+  const LineQuery query{{0.1f, 0, -3}, {-1, -1, 3}, {1, 1, 3}};
+  std::vector<IntervalSet> found[4];
+  std::vector<std::thread> threads;
+  for (std::vector<IntervalSet>& visible : found) {
+    threads.emplace_back([&] {
+      QueryCounters own;
+      geometry.visible({&query, 1}, visible, own);
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_GT(geometry.build_times().line_bvh_seconds, 0);
+  const IntervalSet expected = visible_by(bvh_of({&mesh}), LinePath::kScalar, query);
+  for (const std::vector<IntervalSet>& visible : found) EXPECT_EQ(visible.at(0), expected);
 }
 
 }  // namespace

@@ -1,0 +1,16 @@
+#include "worker/strategies/line_need.h"
+
+namespace penumbra {
+
+bool needs_line_hierarchy(const Mix& mix, const LightSet& lights) {
+  if (mix.automatic) return true;  // there are lines among its candidates
+  int points = 0;
+  for (const StrategyCount& s : mix.strategies) {
+    if (is_line(s.kind) || s.kind == StrategyKind::kVisibleArea) return true;
+    if (s.kind != StrategyKind::kBsdf) points += s.count;
+  }
+  // Where lights are drawn, one may be drawn each time.
+  return points * (lights.draws() ? LightSet::kMostAsked : 1) >= kLeastShaftRays;
+}
+
+}  // namespace penumbra
