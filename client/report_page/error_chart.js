@@ -94,7 +94,7 @@ function errorChart() {
   const plot = el("div", { class: "plot" });
   const redraw = responsive(plot, drawErrorChart);
   section.append(curveLegend(redraw), plot, el("p", { class: "note" },
-    "Each point is the whole image after the same number of passes in every pixel; the band is the 95 % interval. "
+    "Each point is the whole image after the same number of passes in every pixel (of auto: the same share of what each pixel gets); the band is the 95 % interval. "
     + "An unbiased estimator falls by a factor of ten for ten times the CPU seconds."
     + (errorKind.estimated ? " This is the run's own estimate, for want of a reference." : "")));
   document.getElementById("chart-tools").append(svgButton(plot, "error-against-time"),

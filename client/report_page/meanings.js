@@ -2,7 +2,7 @@
 const meanings = {
   mix: "Light samples per strategy and shading point, and how they are combined. Strategies: bsdf (the material's lobe), "
     + "area (uniform on the light), sa (uniform in its solid angle), line-… (a chord of the light, its exactly visible part, a point on that).",
-  passes: "Camera samples in every pixel. A pilot whose samples are discarded turns the budget into this count before the run begins.",
+  passes: "Camera samples in every pixel (of auto: their mean over the pixels). A pilot whose samples are discarded turns the budget into this count before the run begins.",
   cpu_seconds: "Thread CPU seconds of the tile loop, summed over all cores and tiles. Loading the scene and building it are counted apart.",
   budget_ratio: "CPU seconds spent over the CPU seconds asked for. 1 is exact; passes are whole, so half a pass is the least that can be missed.",
   pilot: "CPU seconds of the pilot, which measures the cost of a pass. Its samples are discarded. For fixed mixes it is not part of CPU s; for auto it is.",

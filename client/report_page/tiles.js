@@ -29,7 +29,7 @@ const workerName = (id) => `${hostOf(id)} ${id.slice(0, 8)}`;
 const tileViews = [
   { name: "planned", label: "planned mix", kind: "class", value: (r) => r.planned, show: (v) => v,
     meaning: "The fixed mix that auto's pilot chose for the tile." },
-  { name: "passes", label: "passes", kind: "heat", value: (r) => r.passes, show: (v) => grouped(v), meaning: "Camera samples per pixel in the tile." },
+  { name: "passes", label: "passes", kind: "heat", value: (r) => r.passes, show: (v) => grouped(v), meaning: "Camera samples per pixel in the tile; of auto, in the block of 8×8 pixels with the most." },
   { name: "cost", label: "µs / pixel", kind: "heat", value: (r) => r.per_pixel, show: (v) => `${significant(v)} µs`,
     meaning: "CPU microseconds per pixel in the tile, all passes together." },
   { name: "worker", label: "worker", kind: "class", value: (r) => r.worker, show: workerName,

@@ -143,7 +143,7 @@ bool Geometry::occluded(const Shaft& shaft, const Vec3f& x, const Vec3f& y, Quer
 
 void Geometry::nearest(const FocusedChord& chord, std::vector<SeenInterval>& out,
                        QueryCounters& counters) const {
-  nearest_along(parts_->lines, chord, out, counters);
+  nearest_along(parts_->lines(), chord, out, counters);
 }
 
 Geometry::BuildTimes Geometry::build_times() const {
