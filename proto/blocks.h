@@ -52,6 +52,10 @@ inline int64_t passes_of_block(int64_t passes, int share, int64_t group) {
 /// Mean over the pixels of the share of the tile's passes, in (0,1]; 1 without shares.
 double mean_share(const PixelRect& tile, const std::vector<uint8_t>& shares);
 
+/// Sum over the pixels of the passes that they have of the tile's first `passes`.
+double block_passes_sum(const PixelRect& tile, const std::vector<uint8_t>& shares, int64_t group,
+                        int64_t passes);
+
 /// Empty, or one for each block, none zero.
 bool shares_fit(const PixelRect& tile, const std::vector<uint8_t>& shares);
 

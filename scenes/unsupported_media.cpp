@@ -46,8 +46,9 @@ void add_unsupported_media(const SceneDescription& scene, std::vector<std::strin
     if (const std::string preset = medium->params.string("preset", ""); !preset.empty())
       out.push_back(fmt::format(
           "{}: medium '{}': preset '{}' is not known: sigma_a and sigma_s as without it", at, name, preset));
-    if (medium->params.find("Le") != nullptr)
-      out.push_back(fmt::format("{}: medium '{}': emission (Le) is not rendered", at, name));
+    for (const char* emission : {"Le", "temperature"})
+      if (medium->params.find(emission) != nullptr)
+        out.push_back(fmt::format("{}: medium '{}': emission ({}) is not rendered", at, name, emission));
   }
 }
 

@@ -164,15 +164,22 @@ std::vector<double> image_ratios(const std::vector<int>& candidates) {
 std::vector<double> tile_variances(const std::vector<PixelRect>& tiles, const Measurements& m,
                                    std::vector<double> few) {
   std::vector<double> whole;
-  double sum_few = 0, sum_whole = 0;
+  double sum_few = 0;
   for (size_t t = 0; t < tiles.size(); ++t) {
     whole.push_back(squared_deviations(tiles[t], m.blocks[t]));
     if (!(whole[t] > 0)) continue;
     sum_few += few[t];
-    sum_whole += whole[t];
   }
+  if (!(sum_few > 0)) return few;
+  double sum = 0;
+  for (size_t t = 0; t < tiles.size(); ++t) {
+    if (!(whole[t] > 0)) continue;
+    few[t] = std::sqrt(few[t] * whole[t]);
+    sum += few[t];
+  }
+  // Geometric means are smaller on the whole; the sum stays what it was.
   for (size_t t = 0; t < tiles.size(); ++t)
-    if (whole[t] > 0 && sum_few > 0) few[t] = std::sqrt(few[t] * whole[t] * sum_few / sum_whole);
+    if (whole[t] > 0 && sum > 0) few[t] *= sum_few / sum;
   return few;
 }
 

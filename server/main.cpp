@@ -140,10 +140,12 @@ bool asked_to_end() {
 /// The folder of a leader that has just lost its lead is in its hands until it has noticed and ended.
 absl::StatusOr<StoreFolder> take_over_folder(const std::string& path) {
   constexpr std::chrono::milliseconds kPause{100};
-  constexpr int kTries = 80;
+  constexpr int kTries = 300;
   for (int tries = 1;; ++tries) {
     absl::StatusOr<StoreFolder> folder = StoreFolder::open(path);
-    if (folder.ok() || tries == kTries || asked_to_end()) return folder;
+    if (folder.ok()) return folder;
+    if (asked_to_end()) return absl::CancelledError("asked to end");
+    if (tries == kTries) return absl::UnavailableError(message_of(folder.status()));
     std::this_thread::sleep_for(kPause);
   }
 }

@@ -130,13 +130,13 @@ std::vector<int64_t> common_passes(const JobSpec& spec, const std::vector<int64_
   return common.empty() ? passes : common;
 }
 
-/// Mean over the pixels of tiles' passes, as their blocks share in them, rounded.
+/// Mean over the pixels of what tiles' passes are to their blocks, which have a part in whole groups of them;
+/// rounded.
 int64_t mean_over_pixels(const JobSpec& spec, const std::vector<PixelRect>& tiles, const AutoPlan& plan,
-                         const std::vector<int64_t>& passes) {
+                         const std::vector<int64_t>& groups, const std::vector<int64_t>& passes) {
   double sum = 0;
   for (size_t t = 0; t < tiles.size(); ++t)
-    sum += static_cast<double>(passes[t]) * mean_share(tiles[t], plan.tiles[t].shares) *
-           static_cast<double>(tiles[t].area());
+    sum += block_passes_sum(tiles[t], plan.tiles[t].shares, groups[t], passes[t]);
   return std::llround(sum / static_cast<double>(spec.crop.area()));
 }
 
@@ -192,9 +192,11 @@ absl::StatusOr<int64_t> passes_for_seconds(double budget, const std::vector<std:
 }
 
 int64_t mean_passes(const JobSpec& spec, const std::vector<PixelRect>& tiles, const AutoPlan& plan) {
-  std::vector<int64_t> passes;
-  for (const TilePlan& tile : plan.tiles) passes.push_back(tile.passes);
-  return std::max<int64_t>(1, mean_over_pixels(spec, tiles, plan, passes));
+  double sum = 0;
+  for (size_t t = 0; t < tiles.size(); ++t)
+    sum += static_cast<double>(plan.tiles[t].passes) * mean_share(tiles[t], plan.tiles[t].shares) *
+           static_cast<double>(tiles[t].area());
+  return std::max<int64_t>(1, std::llround(sum / static_cast<double>(spec.crop.area())));
 }
 
 TileTask pilot_task(const JobSpec& spec, const std::vector<PixelRect>& tiles, uint64_t index) {
@@ -309,8 +311,8 @@ static void add_boundaries(const JobSpec& spec, Plan& plan, const std::vector<Sh
     size_t automatic = 0;
     for (size_t m = 0; m < spec.mixes.size(); ++m) {
       if (spec.mixes[m].automatic) {
-        boundary.passes.push_back(
-            mean_over_pixels(spec, tiles, plan.planned.autos[automatic], now[automatic]));
+        boundary.passes.push_back(mean_over_pixels(spec, tiles, plan.planned.autos[automatic],
+                                                   plan.groups[automatic], now[automatic]));
         ++automatic;
       } else {
         boundary.passes.push_back(

@@ -6,6 +6,8 @@
 #include <chrono>
 #include <iterator>
 #include <map>
+#include <memory>
+#include <string_view>
 #include <thread>
 
 #include "proto/status.h"
@@ -249,16 +251,39 @@ class PostgresStore final : public JobStore {
   uint64_t epoch_ = 0;
 };
 
+/// A URL that libpq can read, without a password: command lines are no secret. libpq's own words about a URL
+/// repeat it whole, so they are not passed on.
+absl::Status check_url(const std::string& url) {
+  const std::unique_ptr<PQconninfoOption, decltype(&PQconninfoFree)> options(
+      PQconninfoParse(url.c_str(), nullptr), PQconninfoFree);
+  if (!options) return invalid_input("--database: not a PostgreSQL URL");
+  for (const PQconninfoOption* option = options.get(); option->keyword != nullptr; ++option)
+    if (std::string_view(option->keyword) == "password" && option->val != nullptr)
+      return invalid_input("--database: a password does not belong on a command line; see PGPASSFILE");
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<JobStore>> open_postgres_store(const std::string& url, Durability durability,
                                                               const std::function<bool()>& give_up) {
-  PgConnection connection(PQconnectdb(url.c_str()));
+  RETURN_IF_ERROR(check_url(url));
+  // On this side as well: a leader that the network has cut off must not wait for its database for minutes.
+  const char* const keys[] = {"dbname",
+                              "connect_timeout",
+                              "tcp_user_timeout",
+                              "keepalives_idle",
+                              "keepalives_interval",
+                              "keepalives_count",
+                              nullptr};
+  const char* const values[] = {url.c_str(), "5", "5000", "3", "1", "3", nullptr};
+  PgConnection connection(PQconnectdbParams(keys, values, 1));
   if (PQstatus(connection.get()) != CONNECTION_OK)
-    return invalid_input("--database: {}", PQerrorMessage(connection.get()));
+    return make_status(absl::StatusCode::kUnavailable, "--database: {}", PQerrorMessage(connection.get()));
   auto store = std::make_unique<PostgresStore>(std::move(connection));
   if (const absl::Status status = store->become_leader(give_up); !status.ok())
-    return absl::IsCancelled(status) ? status : invalid_input("--database: {}", message_of(status));
+    return absl::IsCancelled(status) ? status
+                                     : make_status(status.code(), "--database: {}", message_of(status));
   RETURN_IF_ERROR(store->be_durable(durability));
   return std::unique_ptr<JobStore>(std::move(store));
 }

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "proto/auto_plan.h"
+#include "proto/blocks.h"
 #include "proto/status.h"
 #include "server/auto_planner.h"
 
@@ -83,6 +84,19 @@ std::vector<Repeated> repeated(const JobSpec& spec, const Plan& plan, size_t til
   return out;
 }
 
+/// Whole groups that blocks have a part in are a little more than their shares of the passes: by this factor,
+/// over the tiles of an automatic mix with these passes.
+double rounding_of_blocks(const std::vector<PixelRect>& tiles, const AutoPlan& plan,
+                          const std::vector<int64_t>& groups, const std::vector<int64_t>& passes) {
+  double whole_groups = 0, shares = 0;
+  for (size_t t = 0; t < tiles.size(); ++t) {
+    whole_groups += block_passes_sum(tiles[t], plan.tiles[t].shares, groups[t], passes[t]);
+    shares += static_cast<double>(passes[t]) * mean_share(tiles[t], plan.tiles[t].shares) *
+              static_cast<double>(tiles[t].area());
+  }
+  return shares > 0 ? whole_groups / shares : 1;
+}
+
 /// The totals so far, as they are remembered.
 EarlierPlan remembered(const PlannedPasses& planned) {
   EarlierPlan out{planned.open.front(), planned.passes, {}};
@@ -93,11 +107,11 @@ EarlierPlan remembered(const PlannedPasses& planned) {
   return out;
 }
 
-/// Passes of each tile in what is sure.
-std::vector<int64_t> sure_passes(const Plan& plan, size_t tiles, size_t mix) {
+/// Passes of each tile in the first `ranges` ranges.
+std::vector<int64_t> passes_in(const Plan& plan, uint64_t ranges, size_t tiles, size_t mix) {
   std::vector<int64_t> out(tiles, 0);
-  if (plan.sure == 0) return out;
-  for (size_t t = 0; t < tiles; ++t) out[t] = run_range(plan, plan.sure - 1, t, mix).end;
+  if (ranges == 0) return out;
+  for (size_t t = 0; t < tiles; ++t) out[t] = run_range(plan, ranges - 1, t, mix).end;
   return out;
 }
 
@@ -150,7 +164,7 @@ absl::StatusOr<PlannedPasses> replanned(const JobSpec& spec, const std::vector<s
   PlannedPasses next{{}, {}, planned.earlier, {planned.open.begin() + 1, planned.open.end()}};
   next.earlier.push_back(remembered(planned));
   for (size_t m = 0; m < spec.mixes.size(); ++m) {
-    const std::vector<int64_t> sure = sure_passes(plan, tiles.size(), m);
+    const std::vector<int64_t> sure = passes_in(plan, plan.sure, tiles.size(), m);
     if (!spec.mixes[m].automatic) {
       ASSIGN_OR_RETURN(
           const int64_t passes,
@@ -159,7 +173,15 @@ absl::StatusOr<PlannedPasses> replanned(const JobSpec& spec, const std::vector<s
       continue;
     }
     const double factor = measured[m].speed.factor();
-    const AutoSpending spending{factor, measured[m].speed.seconds + measured[m].to_come * factor, sure};
+    // Repeated passes had the blocks of the first ones, of which whole groups are more than of all.
+    const size_t a = next.autos.size();
+    const AutoPlan& current = planned.autos[a];
+    const double rounding =
+        rounding_of_blocks(tiles, current, plan.groups[a],
+                           passes_in(plan, plan.boundaries.size(), tiles.size(), m)) /
+        rounding_of_blocks(tiles, current, plan.groups[a], passes_in(plan, plan.measured, tiles.size(), m));
+    const AutoSpending spending{factor * rounding, measured[m].speed.seconds + measured[m].to_come * factor,
+                                sure};
     ASSIGN_OR_RETURN(AutoPlan again, plan_auto(spec, tiles, pilot, next.autos.size(), spending));
     next.passes.push_back(mean_passes(spec, tiles, again));
     next.autos.push_back(std::move(again));

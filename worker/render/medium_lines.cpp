@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace penumbra {
 namespace {
@@ -67,13 +68,21 @@ Rgb MediumLines::estimate(const Ray& ray, double until, const PassSampler& sampl
         for (int i = 0; i < count_; ++i) ask(l, 1.0 / count_, i, count_);
     return sum;
   }
+  // Half of them by what they bring to the middle of the segment, half uniformly: a cone or a light's back
+  // may leave out the middle and light the rest.
   const int draws = LightSet::kMostAsked;
   const double middle = 0.5 * std::min(until, double(lights.reach()));
   const Receiver receiver{Vec3d(ray.origin) + Vec3d(ray.direction) * middle, false, Vec3d(0)};
+  const auto size = double(lights.size());
   for (int d = 0; d < draws; ++d) {
-    const DrawnLight drawn = lights.draw(receiver, numbers.draw(depth, d, draws));
-    if (drawn.probability > 0 && !is_far(lights, drawn.light))
-      ask(drawn.light, 1 / (draws * drawn.probability), d, draws);
+    const double u = numbers.draw(depth, d, draws);
+    const DrawnLight drawn = u < 0.5 ? lights.draw(receiver, 2 * u) : DrawnLight{};
+    if (u < 0.5 && !(drawn.probability > 0)) continue;  // none that the middle knows of
+    const size_t light = u < 0.5 ? drawn.light : std::min(size_t((2 * u - 1) * size), lights.size() - 1);
+    const double probability = 0.5 * lights.probability(receiver, light) + 0.5 / size;
+    if (is_far(lights, light)) continue;
+    for (int i = 0; i < count_; ++i)
+      ask(light, 1 / (draws * count_ * probability), d * count_ + i, draws * count_);
   }
   return sum;
 }
@@ -109,10 +118,33 @@ bool MediumLines::clip_to_front(const Apex& apex, const Ray& ray, double& t0, do
   return t0 < t1;
 }
 
+/// The apex moved off its light's plane by what a fan's sides may be wrong by, as end_on_light() moves the
+/// ends of shadow segments: a surface in that plane hides nothing in front of it.
+static Vec3f off_the_light(const Vec3d& p, const Vec3d& n, const Vec3d& far_end) {
+  const double largest = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) + (far_end - p).length();
+  return Vec3f(p + n * (16 * double(std::numeric_limits<float>::epsilon()) * largest));
+}
+
+/// Whether a light that emits inwards is in its own way: on the far side of a closed wall, or out through the
+/// side of a tube. Its triangles are left out of the query, so that is asked here.
+static bool through_own_wall(const LightShape& shape, const Vec3d& apex, const Vec3d& x) {
+  if (const auto* sphere = std::get_if<SphereShape>(&shape))
+    return sphere->inwards && (x - Vec3d(sphere->center)).length() > double(sphere->radius);
+  const auto* tube = std::get_if<CylinderShape>(&shape);
+  if (tube == nullptr || !tube->inwards) return false;
+  const double height = Vec3d(tube->axis).length();
+  const Vec3d axis = Vec3d(tube->axis) / height, way = x - apex, from = apex - Vec3d(tube->base);
+  const Vec3d across = way - axis * way.dot(axis), start = from - axis * from.dot(axis);
+  // From the wall at start the way meets the wall again at t: |start + t across| = |start|.
+  const double t = across.length2() > 0 ? -2 * start.dot(across) / across.length2() : 2;
+  const double there = from.dot(axis) + t * way.dot(axis);
+  return t < 1 && there > 0 && there < height;
+}
+
 void MediumLines::find_visible(const Apex& apex, const Ray& ray, double t0, double t1) {
   const LightSet& lights = scene_.lights;
   LineQuery query;
-  query.x = Vec3f(apex.p);
+  query.x = off_the_light(apex.p, apex.n, Vec3d(ray.origin) + Vec3d(ray.direction) * t1);
   query.a = ray.origin + ray.direction * float(t0);
   query.b = ray.origin + ray.direction * float(t1);
   if (apex.light < lights.area.size()) {
@@ -164,6 +196,9 @@ Rgb MediumLines::along(const Apex& apex, const Ray& ray, size_t part, double unt
   const double density = interval.pdf(t) * (interval.angle() / total);
   if (!(density > 0)) return Rgb(0);
   const Vec3f x(Vec3d(ray.origin) + Vec3d(ray.direction) * t);
+  if (apex.light < scene_.lights.area.size() &&
+      through_own_wall(scene_.lights.area[apex.light].shape, apex.p, Vec3d(x)))
+    return Rgb(0);
   Vec3f wi;
   double distance = 0;
   Rgb f = arriving(apex, x, wi, distance);
@@ -171,7 +206,8 @@ Rgb MediumLines::along(const Apex& apex, const Ray& ray, size_t part, double unt
   walk_.stand_in(in.medium);
   f *= in.phase->scatter(-ray.direction, wi) * walk_.scattering(part, t) *
        walk_.transmittance(x, wi, distance);
-  if (scene_.geometry->has_alpha() && scene_.geometry->occluded_by_alpha(x, Vec3f(apex.p), counters_))
+  if (scene_.geometry->has_alpha() &&
+      scene_.geometry->occluded_by_alpha(x, off_the_light(apex.p, apex.n, Vec3d(x)), counters_))
     return Rgb(0);
   return f * float(apex.weight / density);
 }

@@ -39,7 +39,7 @@ class PixelSampler {
         mix_(mix),
         index_(uint32_t(index)),
         group_(group),
-        stage_(rendering.scene.effects.camera.get()),
+        stage_(rendering.job.probe ? nullptr : rendering.scene.effects.camera.get()),
         prepared_(mix, rendering.scene.lights),
         tracer_(rendering.scene, prepared_, rendering.job.max_depth, counters_) {}
   PixelSampler(const PixelSampler&) = delete;  // the tracer refers to its neighbours

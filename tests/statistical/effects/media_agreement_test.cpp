@@ -61,5 +61,51 @@ AttributeBegin Translate 1.2 0.5 0 MediumInterface "" "thin" Material "glass" Sh
   test::expect_agreement(test::load_text(text), kMixes, how);
 }
 
+/// Black fog about a camera that looks along a beam of light; only what the fog scatters is seen.
+std::string beam(const std::string& world) {
+  return R"(MakeNamedMedium "m" "string type" "homogeneous" "rgb sigma_a" [0.05 0.05 0.05] "rgb sigma_s" [0.1 0.1 0.1]
+MediumInterface "" "m"
+LookAt 0 0 0  0 0 1  0 1 0
+Camera "perspective" "float fov" 5
+WorldBegin
+)" + world;
+}
+
+void expect_lines_as_points(const std::string& world) {
+  test::AgreementSpec how;
+  how.width = 12;
+  how.height = 12;
+  how.passes = 64;
+  test::expect_agreement(test::load_text(beam(world)), {"sa:2", "sa:2/medium=line"}, how);
+}
+
+TEST(MediaAgreement, ManyLightsThatMissTheMiddleOfTheRay) {
+  std::string world;
+  for (int i = 0; i < 17; ++i) {
+    const std::string z = std::to_string(2 + 0.05 * i);
+    world += "LightSource \"spot\" \"point from\" [0 2 " + z + "] \"point to\" [0 0 " + z +
+             "] \"float coneangle\" 10 \"float conedeltaangle\" 2 \"rgb I\" [2 2 2]\n";
+  }
+  expect_lines_as_points(world);
+}
+
+TEST(MediaAgreement, ALightInThePlaneOfASlantedPanel) {
+  expect_lines_as_points(
+      R"(AttributeBegin AreaLightSource "diffuse" "rgb L" [9 9 9] Material "matte" "rgb Kd" [0 0 0]
+Shape "quad" "point o" [-1.18939454 1.66659557 8.55479713] "vector u" [0.932327346 0.296397372 0.207157714]
+"vector v" [0 -0.57286746 0.819648018] AttributeEnd
+Material "matte" "rgb Kd" [0 0 0]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point P" [-2.58788556 2.0813007 7.01458853
+1.14142383 3.26689019 7.84321939 1.14142383 0.975420345 11.1218115 -2.58788556 -0.210169143 10.2931806]
+)");
+}
+
+TEST(MediaAgreement, ALightThatEmitsInwards) {
+  expect_lines_as_points(
+      "AttributeBegin Translate 0 0.6 3 AreaLightSource \"diffuse\" \"rgb L\" [9 9 9] \"bool twosided\" "
+      "\"true\" "
+      "Material \"matte\" \"rgb Kd\" [0 0 0] Shape \"sphere\" \"float radius\" 0.5 AttributeEnd\n");
+}
+
 }  // namespace
 }  // namespace penumbra

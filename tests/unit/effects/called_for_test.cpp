@@ -17,10 +17,15 @@ TEST(CalledFor, PlainScenesHaveNoStage) {
     const ScenePtr scene = test::load(kGallery + name);
     ASSERT_TRUE(scene) << name;
     EXPECT_EQ(scene->effects.camera, nullptr) << name;
+    EXPECT_EQ(scene->effects.media, nullptr) << name;
   }
   const ScenePtr scene = test::load(kGallery + "lens.pbrt");
   ASSERT_TRUE(scene);
   EXPECT_NE(scene->effects.camera, nullptr);
+  const ScenePtr fog = test::load(kGallery + "fog.pbrt");
+  ASSERT_TRUE(fog);
+  EXPECT_NE(fog->effects.media, nullptr);
+  EXPECT_EQ(fog->effects.camera, nullptr);
 }
 
 /// A stage that passes the pinhole's ray on, and counts.

@@ -43,6 +43,9 @@ TEST(Blocks, TheMeanShareIsOverPixels) {
   const PixelRect tile{0, 0, 12, 8};  // blocks of 64 and 32 pixels
   EXPECT_EQ(mean_share(tile, {}), 1);
   EXPECT_DOUBLE_EQ(mean_share(tile, {kWholeShare, 51}), (64 + 32 * 0.2) / 96);
+  EXPECT_EQ(block_passes_sum(tile, {}, 4, 10), 960);
+  EXPECT_EQ(block_passes_sum(tile, {kWholeShare, 51}, 4, 16),
+            16 * 64 + 4 * 32);  // floor(4 · 0.2 + 1 − 0.1) groups of 4
   EXPECT_TRUE(shares_fit(tile, {}));
   EXPECT_TRUE(shares_fit(tile, {1, 255}));
   EXPECT_FALSE(shares_fit(tile, {1, 0}));

@@ -140,7 +140,9 @@ TEST(AutoPlanner, BlocksShareInPassesByTheirError) {
   const Plan run = make_plan(spec, {mean}, {plan});
   EXPECT_GE(plan.tiles[0].passes * plan.tiles[0].shares[7] / 255, 2 * run.groups[0][0]);
   EXPECT_EQ(run_task(spec, run, tiles, 0, 0).chosen[0].shares, plan.tiles[0].shares);
-  EXPECT_EQ(run.boundaries.back().passes, std::vector<int64_t>{mean});
+  // In whole groups it is a little more.
+  EXPECT_GE(run.boundaries.back().passes[0], mean);
+  EXPECT_LE(run.boundaries.back().passes[0], mean + run.groups[0][0]);
   // With a given number of passes every pixel has that number.
   EXPECT_TRUE(planned(spec_of(2, SppBudget{16}), pilot).tiles[0].shares.empty());
 }
