@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "proto/convert.h"
+#include "proto/sync.h"
 #include "tests/system/cluster/calm.h"
 
 namespace penumbra {
@@ -79,7 +80,7 @@ TEST(Refusals, LateAndRepeatedResultsAreAcknowledgedAndThrownAway) {
   cluster.start_server();
   const JobId job = cluster.submit(cluster.spec(cluster.upload_scene("0")));
   v1::SyncRequest state;
-  state.set_protocol(1);
+  state.set_protocol(kSyncProtocol);
   state.set_name("by-hand");
   *state.mutable_worker() = to_proto(WorkerInfo{"incarnation-1", "host", "avx2", 1});
   auto* completed = state.add_completed();
