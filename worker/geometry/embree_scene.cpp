@@ -1,5 +1,6 @@
 #include "worker/geometry/embree_scene.h"
 
+#include <Imath/ImathBox.h>
 #include <embree3/rtcore.h>
 
 #include <cmath>
@@ -9,6 +10,7 @@
 #include <string>
 
 #include "proto/status.h"
+#include "worker/geometry/light_end.h"
 
 namespace penumbra {
 namespace {
@@ -57,7 +59,7 @@ GeometryHandle make_triangles(RTCDevice device, const TriangleMesh& mesh, const 
 
 Scene make_scene(RTCDevice device) {
   Scene scene(rtcNewScene(device));
-  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
   rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
   return scene;
 }
@@ -75,19 +77,73 @@ GeometryHandle make_instance(RTCDevice device, RTCScene object, const Matrix& to
   return geometry;
 }
 
-bool segment_hits(RTCScene scene, const Vec3f& x, const Vec3f& y) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  const Vec3f d = y - x;
+/// Anything in (0, far) of the ray from x along d that the context's filter, if it has one, lets pass?
+bool ray_hits(RTCScene scene, RTCIntersectContext& context, const Vec3f& x, const Vec3f& d, float far) {
   RTCRay ray;
   // Strictly beyond x: Embree's robust test counts a surface at the near end itself, and at x it would be
   // the one that x was moved off, by as little as a denormal number where its plane passes through 0.
   ray.org_x = x.x, ray.org_y = x.y, ray.org_z = x.z, ray.tnear = std::numeric_limits<float>::min();
   ray.dir_x = d.x, ray.dir_y = d.y, ray.dir_z = d.z, ray.time = 0;
-  ray.tfar = std::nextafter(1.f, 0.f);
+  ray.tfar = std::nextafter(far, 0.f);
   ray.mask = ~0u, ray.id = 0, ray.flags = 0;
   rtcOccluded1(scene, &context, &ray);
   return ray.tfar < 0;  // Embree's sign of a hit: -inf
+}
+
+/// The scene's own triangles, for the filter that judges hits close to a light.
+struct Surfaces {
+  std::vector<const TriangleMesh*> meshes;
+  std::vector<Matrix> to_world;  ///< of the instances
+
+  const Vec3f& vertex(uint32_t mesh, uint32_t primitive, int corner) const {
+    const TriangleMesh& m = *meshes[mesh];
+    return m.positions[m.indices[3 * size_t{primitive} + static_cast<size_t>(corner)]];
+  }
+  /// Of the light that a segment ends on.
+  Imath::Box3f bounds(const LightEnd& end) const {
+    Imath::Box3f box(Vec3f(end.p));
+    for (uint32_t i = 0; i < end.light_primitives; ++i)
+      for (int c = 0; c < 3; ++c) box.extendBy(vertex(end.light.mesh, end.light.primitive + i, c));
+    return box;
+  }
+};
+
+/// Embree's context of a segment that ends on a light, with what its filter needs.
+struct ApproachContext {
+  RTCIntersectContext embree;  // first: the filter is given its address
+  const Surfaces* surfaces;
+  const LightEnd* end;
+  LightApproach approach;
+};
+
+/// Embree's filter: of what a ray meets close to a light only what is before it counts.
+void approach_filter(const RTCFilterFunctionNArguments* arguments) {
+  const auto& context = *reinterpret_cast<const ApproachContext*>(arguments->context);
+  const auto& ray = *reinterpret_cast<const RTCRay*>(arguments->ray);
+  const auto& hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
+  const LightEnd& end = *context.end;
+  const bool placed = hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
+  if (!placed && hit.geomID == end.light.mesh && hit.primID - end.light.primitive < end.light_primitives) {
+    arguments->valid[0] = 0;
+    return;
+  }
+  if (ray.tfar < 1 - context.approach.doubt()) return;  // the ray's tfar is the hit's distance here
+  const Surfaces& all = *context.surfaces;
+  Vec3d surface[3];
+  for (int c = 0; c < 3; ++c) {
+    surface[c] = Vec3d(all.vertex(hit.geomID, hit.primID, c));
+    if (!placed) continue;
+    const Vec3d in_object = surface[c];
+    all.to_world[hit.instID[0] - all.meshes.size()].multVecMatrix(in_object, surface[c]);
+  }
+  if (!context.approach.hides(surface, all.bounds(end))) arguments->valid[0] = 0;
+}
+
+bool approach_hits(RTCScene scene, const Surfaces& surfaces, const Vec3f& x, const LightEnd& y) {
+  ApproachContext context{{}, &surfaces, &y, LightApproach(x, y)};
+  rtcInitIntersectContext(&context.embree);
+  context.embree.filter = approach_filter;
+  return ray_hits(scene, context.embree, x, Vec3f(y.p - Vec3d(x)), 1 + context.approach.doubt());
 }
 
 /// Geometry numbers of a top scene: meshes first, then instances.
@@ -102,6 +158,7 @@ struct EmbreeScene::Parts {
   Device device;
   std::vector<std::unique_ptr<AlphaTest>> alphas;  // Embree keeps the addresses
   Scenes all, alpha_only;
+  Surfaces surfaces;
   uint32_t meshes = 0;
   bool has_alpha = false;
 
@@ -149,6 +206,8 @@ absl::StatusOr<std::unique_ptr<EmbreeScene>> EmbreeScene::build(std::span<const 
   parts.device.reset(rtcNewDevice(("threads=" + std::to_string(threads)).c_str()));
   if (!parts.device) return absl::InternalError("Embree gives no device");
   parts.meshes = static_cast<uint32_t>(meshes.size());
+  for (const MeshInput& mesh : meshes) parts.surfaces.meshes.push_back(mesh.mesh);
+  for (const InstanceInput& instance : instances) parts.surfaces.to_world.push_back(instance.to_world);
 
   std::vector<GeometryHandle> opaque_and_alpha(meshes.size());
   std::vector<bool> tested(meshes.size(), false);
@@ -203,11 +262,17 @@ std::optional<Hit> EmbreeScene::intersect(const Ray& ray) const {
 }
 
 bool EmbreeScene::occluded(const Vec3f& x, const Vec3f& y) const {
-  return segment_hits(parts_->all.top.get(), x, y);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  return ray_hits(parts_->all.top.get(), context, x, y - x, 1);
 }
 
-bool EmbreeScene::occluded_by_alpha(const Vec3f& x, const Vec3f& y) const {
-  return parts_->has_alpha && segment_hits(parts_->alpha_only.top.get(), x, y);
+bool EmbreeScene::occluded(const Vec3f& x, const LightEnd& y) const {
+  return approach_hits(parts_->all.top.get(), parts_->surfaces, x, y);
+}
+
+bool EmbreeScene::occluded_by_alpha(const Vec3f& x, const LightEnd& y) const {
+  return parts_->has_alpha && approach_hits(parts_->alpha_only.top.get(), parts_->surfaces, x, y);
 }
 
 bool EmbreeScene::has_alpha() const {

@@ -17,7 +17,8 @@ class EmbreeScene {
 
   std::optional<Hit> intersect(const Ray& ray) const;
   bool occluded(const Vec3f& x, const Vec3f& y) const;
-  bool occluded_by_alpha(const Vec3f& x, const Vec3f& y) const;
+  bool occluded(const Vec3f& x, const LightEnd& y) const;
+  bool occluded_by_alpha(const Vec3f& x, const LightEnd& y) const;
   bool has_alpha() const;
   void bounds(Vec3f& lo, Vec3f& hi) const;
 

@@ -63,7 +63,12 @@ bool Geometry::occluded(const Vec3f& x, const Vec3f& y, QueryCounters& counters)
   return parts_->embree->occluded(x, y);
 }
 
-bool Geometry::occluded_by_alpha(const Vec3f& x, const Vec3f& y, QueryCounters& counters) const {
+bool Geometry::occluded(const Vec3f& x, const LightEnd& y, QueryCounters& counters) const {
+  ++counters.rays;
+  return parts_->embree->occluded(x, y);
+}
+
+bool Geometry::occluded_by_alpha(const Vec3f& x, const LightEnd& y, QueryCounters& counters) const {
   if (!parts_->embree->has_alpha()) return false;
   ++counters.rays;
   return parts_->embree->occluded_by_alpha(x, y);
@@ -98,7 +103,8 @@ void Geometry::visible(const Shaft& shaft, std::span<const LineQuery> queries, s
   }
 }
 
-bool Geometry::occluded(const Shaft& shaft, const Vec3f& x, const Vec3f& y, QueryCounters& counters) const {
+bool Geometry::occluded(const Shaft& shaft, const Vec3f& x, const LightEnd& y,
+                        QueryCounters& counters) const {
   // Alpha-tested meshes are in no list.
   if (shaft.content_ == ShaftContent::kClear) return occluded_by_alpha(x, y, counters);
   return shaft.content_ == ShaftContent::kHidden || occluded(x, y, counters);

@@ -63,6 +63,14 @@ struct LineQuery {
       0;  ///< light.mesh never hide the chord: they are the light's own (flat) surface
 };
 
+/// A point of a flat light, where a shadow segment ends. Only what lies before the light's plane by more than
+/// the rounding of the vertices hides it (light_end.cpp), as little as that may be.
+struct LightEnd {
+  Vec3d p, n;         ///< n: unit normal of the light, of either sense
+  PrimitiveId light;  ///< as in LineQuery: the light's own primitives do not hide it
+  uint32_t light_primitives = 0;
+};
+
 /// What line and ray queries cost, for statistics; one per thread.
 struct QueryCounters {
   uint64_t rays = 0, line_queries = 0;
@@ -89,8 +97,11 @@ class Geometry {
   /// Anything strictly between x and y? Both already moved off their surfaces. Alpha-tested meshes count.
   bool occluded(const Vec3f& x, const Vec3f& y, QueryCounters& counters) const;
 
+  /// The same for a y on a flat light: anything between x and the light's surface, but not that itself?
+  bool occluded(const Vec3f& x, const LightEnd& y, QueryCounters& counters) const;
+
   /// Like occluded(), but only meshes that a line query cannot see (alpha-tested ones); false without any.
-  bool occluded_by_alpha(const Vec3f& x, const Vec3f& y, QueryCounters& counters) const;
+  bool occluded_by_alpha(const Vec3f& x, const LightEnd& y, QueryCounters& counters) const;
   bool has_alpha() const;
 
   /// The visible part of each query's chord as intervals of v in [0,1], P(v) = a + v (b - a); opaque
@@ -106,7 +117,7 @@ class Geometry {
   void visible(const Shaft& shaft, std::span<const LineQuery> queries, std::vector<IntervalSet>& out,
                QueryCounters& counters) const;
   /// As occluded(x, y), for the shaft's x and a y on its light, on its side of the horizon.
-  bool occluded(const Shaft& shaft, const Vec3f& x, const Vec3f& y, QueryCounters& counters) const;
+  bool occluded(const Shaft& shaft, const Vec3f& x, const LightEnd& y, QueryCounters& counters) const;
 
   struct BuildTimes {
     double embree_seconds = 0, line_bvh_seconds = 0;

@@ -69,8 +69,9 @@ class Generator {
     if (ha < 0) a += (b - a) * (ha / (ha - hb));
     if (hb < 0) b += (a - b) * (hb / (hb - ha));
     point.lines.push_back({x, a, b, light.id, light.primitives});
-    // Short of the light by a rounding, so that the light itself does not hide it.
-    point.points.push_back(x + (a + (b - a) * uniform() - x) * 0.9999f);
+    const Vec3d on_light = Vec3d(a) + (Vec3d(b) - Vec3d(a)) * double{uniform()};
+    point.points.push_back(
+        {on_light, Vec3d(light.u).cross(Vec3d(light.v)).normalized(), light.id, light.primitives});
   }
 
   const Geometry& geometry_;

@@ -30,7 +30,7 @@ struct BenchScene {
 /// One shading point: lines towards one light and a point on each of them.
 struct ShadingPoint {
   std::vector<LineQuery> lines;
-  std::vector<Vec3f> points;  ///< one on each line
+  std::vector<LightEnd> points;  ///< one on each line
 };
 
 /// Camera hits in 16×16 tiles drawn at random, pixel by pixel within a tile, each with `lines` random chords

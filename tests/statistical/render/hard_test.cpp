@@ -54,6 +54,10 @@ TEST(HardScenes, CoplanarStacks) {
   test::expect_agreement(hard_scene("stacks"), kEveryStrategy, small(32));
 }
 
+TEST(HardScenes, CoversCloseToTheirLight) {
+  test::expect_agreement(hard_scene("covered"), kEveryStrategy, small(32));
+}
+
 TEST(HardScenes, LightAtAGrazingAngle) {
   std::vector<std::string> mixes = kEveryStrategy;
   mixes[0] = "bsdf:3+sa:1";  // a light under 1e-3 rad is not met by chance
