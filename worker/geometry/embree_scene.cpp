@@ -121,13 +121,13 @@ void approach_filter(const RTCFilterFunctionNArguments* arguments) {
   const auto& context = *reinterpret_cast<const ApproachContext*>(arguments->context);
   const auto& ray = *reinterpret_cast<const RTCRay*>(arguments->ray);
   const auto& hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
+  if (ray.tfar < 1 - context.approach.doubt()) return;  // the ray's tfar is the hit's distance here
   const LightEnd& end = *context.end;
   const bool placed = hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
   if (!placed && hit.geomID == end.light.mesh && hit.primID - end.light.primitive < end.light_primitives) {
     arguments->valid[0] = 0;
     return;
   }
-  if (ray.tfar < 1 - context.approach.doubt()) return;  // the ray's tfar is the hit's distance here
   const Surfaces& all = *context.surfaces;
   Vec3d surface[3];
   for (int c = 0; c < 3; ++c) {
@@ -143,7 +143,7 @@ bool approach_hits(RTCScene scene, const Surfaces& surfaces, const Vec3f& x, con
   ApproachContext context{{}, &surfaces, &y, LightApproach(x, y)};
   rtcInitIntersectContext(&context.embree);
   context.embree.filter = approach_filter;
-  return ray_hits(scene, context.embree, x, Vec3f(y.p - Vec3d(x)), 1 + context.approach.doubt());
+  return ray_hits(scene, context.embree, x, context.approach.way(), 1 + context.approach.doubt());
 }
 
 /// Geometry numbers of a top scene: meshes first, then instances.

@@ -1,5 +1,5 @@
-// Shadow segments that end on a flat light: covers a few units of the last place before it hide it, what lies in
-// its plane or behind it does not, and of its own surface only what is named.
+// Shadow segments that end on a flat light: covers a few units of the last place before it hide it, what lies
+// in its plane or behind it does not, and of its own surface only what is named.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -94,7 +94,8 @@ TEST(LightEnd, InstancesAndAlphaAreJudgedAlike) {
     const TriangleMesh light = f.quad(0, 1, 0, 1, 0);
     Frame object = f;
     object.o -= Vec3d(1, 2, 3);
-    const TriangleMesh placed = object.quad(-1, 2, -1.5, 1.5, before), cover = f.quad(-1, 2, -1.5, 1.5, before);
+    const TriangleMesh placed = object.quad(-1, 2, -1.5, 1.5, before),
+                       cover = f.quad(-1, 2, -1.5, 1.5, before);
     Matrix to_world;
     to_world.translate(Vec3d(1, 2, 3));
     const Geometry instanced = geometry_of({{&light}, {&placed}}, {{1, 2}}, {{0, to_world}});
