@@ -142,6 +142,8 @@ void approach_filter(const RTCFilterFunctionNArguments* arguments) {
 bool approach_hits(RTCScene scene, const Surfaces& surfaces, const Vec3f& x, const LightEnd& y) {
   ApproachContext context{{}, &surfaces, &y, LightApproach(x, y)};
   rtcInitIntersectContext(&context.embree);
+  if (context.approach.alone())  // as far as before the light, and no filter
+    return ray_hits(scene, context.embree, x, context.approach.way(), 1 - context.approach.doubt());
   context.embree.filter = approach_filter;
   return ray_hits(scene, context.embree, x, context.approach.way(), 1 + context.approach.doubt());
 }

@@ -5,7 +5,9 @@
 #include "proto/status.h"
 #include "worker/geometry/embree_scene.h"
 #include "worker/geometry/line_query.h"
+#include "worker/geometry/light_end.h"
 #include "worker/geometry/line_fan.h"
+#include "worker/geometry/neighbours.h"
 #include "worker/geometry/shaft_list.h"
 
 namespace penumbra {
@@ -76,6 +78,16 @@ bool Geometry::occluded_by_alpha(const Vec3f& x, const LightEnd& y, QueryCounter
 
 bool Geometry::has_alpha() const {
   return parts_->embree->has_alpha();
+}
+
+bool Geometry::crowded(const PrimitiveId& light, uint32_t primitives, const Vec3f& lo,
+                       const Vec3f& hi) const {
+  if (parts_->embree->has_alpha() || light.instance != kNone) return true;  // not in the lines' hierarchy
+  Vec3f scene_lo, scene_hi;
+  parts_->embree->bounds(scene_lo, scene_hi);
+  const Vec3d margin((Vec3d(scene_hi) - Vec3d(scene_lo)).length() * LightApproach::kClose);
+  const Excluded own{parts_->lines.first_triangle[light.mesh] + light.primitive, primitives};
+  return anything_meets(parts_->lines, Vec3d(lo) - margin, Vec3d(hi) + margin, own);
 }
 
 void Geometry::visible(std::span<const LineQuery> queries, std::vector<IntervalSet>& out,

@@ -69,6 +69,7 @@ struct LightEnd {
   Vec3d p, n;         ///< n: unit normal of the light, of either sense
   PrimitiveId light;  ///< as in LineQuery: the light's own primitives do not hide it
   uint32_t light_primitives = 0;
+  bool crowded = true;  ///< Geometry::crowded() of the light; false spares the judging of what is close to it
 };
 
 /// What line and ray queries cost, for statistics; one per thread.
@@ -103,6 +104,9 @@ class Geometry {
   /// Like occluded(), but only meshes that a line query cannot see (alpha-tested ones); false without any.
   bool occluded_by_alpha(const Vec3f& x, const LightEnd& y, QueryCounters& counters) const;
   bool has_alpha() const;
+  /// Is anything but the light's own primitives so close to a flat light that a shadow ray cannot tell it from
+  /// the light? To be asked once per light. `lo`, `hi`: bounds of its vertices.
+  bool crowded(const PrimitiveId& light, uint32_t primitives, const Vec3f& lo, const Vec3f& hi) const;
 
   /// The visible part of each query's chord as intervals of v in [0,1], P(v) = a + v (b - a); opaque
   /// meshes only. Queries of one call share x (they are traced together where that is faster); the

@@ -11,7 +11,7 @@ namespace penumbra {
 // as a cross product, of the sum) is a few units of the last place of the largest length in it: 32 u of the
 // light's coordinates and the distance from x (as sums, which are no less), over the height of x, for what is
 // parallel to the light. For what is not, and because judging a hit costs less than finding it, no less than
-// 2^-10 of the way; and no more than half of it, so that a light seen from its own plane hides behind what is
+// 2^-11 of the way; and no more than half of it, so that a light seen from its own plane hides behind what is
 // clearly before it.
 
 // The segment crosses the surface's plane at 1 - s of its length, so s · height before the light's plane: in

@@ -12,10 +12,14 @@ namespace penumbra {
 /// One segment from x to a point of a flat light, refers to its arguments.
 class LightApproach {
  public:
+  /// What is farther than this share of the way from the light is never in doubt, at the least doubt: twice
+  /// that, so that no rounding of a ray's distance takes it there.
+  static constexpr float kLeastDoubt = 0x1p-11f, kClose = 2 * kLeastDoubt;
+
   // Here, and in single precision, because every shadow ray makes one: more or less doubt by a rounding
   // changes nothing. Derived in light_end.cpp.
   LightApproach(const Vec3f& x, const LightEnd& end) : x_(x), end_(end), way_(end.p - Vec3d(x)) {
-    constexpr float kRounding = 0x1p-19f, kLeastDoubt = 0x1p-10f, kMostDoubt = 0.5f;
+    constexpr float kRounding = 0x1p-19f, kMostDoubt = 0.5f;
     const Vec3f p(end.p);
     const float largest = (std::abs(p.x) + std::abs(p.y) + std::abs(p.z)) +
                           (std::abs(way_.x) + std::abs(way_.y) + std::abs(way_.z));
@@ -25,6 +29,9 @@ class LightApproach {
     else
       doubt_ = rounding < height * kMostDoubt ? rounding / height : kMostDoubt;
   }
+
+  /// Nothing but the light itself can be met where there is doubt.
+  bool alone() const { return !end_.crowded && doubt_ == kLeastDoubt; }
 
   /// From x to the end, for the ray.
   const Vec3f& way() const { return way_; }

@@ -18,6 +18,8 @@ struct AreaEmitter {
   uint32_t primitives = 0;
   /// The triangles are the shape itself (quad, triangle), not a tessellation of it.
   bool flat = true;
+  /// Something else is very close to it (Geometry::crowded).
+  bool crowded = true;
   /// Its surface is not there for rays (`"float alpha" 0`): a material's direction cannot meet it.
   bool invisible = false;
 };

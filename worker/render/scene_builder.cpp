@@ -1,5 +1,7 @@
 #include "worker/render/scene_builder.h"
 
+#include <Imath/ImathBox.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -157,6 +159,14 @@ absl::Status RenderSceneBuilder::build_geometry() {
   for (size_t m = 0; m < scene_->meshes.size(); ++m)
     inputs.push_back({&scene_->meshes[m].mesh, alpha_test(m), visible_[m]});
   ASSIGN_OR_RETURN(scene_->geometry, Geometry::build(inputs, objects_, placed_, options_.threads));
+  for (AreaEmitter& light : scene_->lights.area) {
+    const TriangleMesh& mesh = scene_->meshes[light.mesh].mesh;
+    Imath::Box3f box;
+    for (size_t i = 0; i < 3 * size_t{light.primitives}; ++i)
+      box.extendBy(mesh.positions[mesh.indices[3 * size_t{light.first_primitive} + i]]);
+    const PrimitiveId id{kNone, light.mesh, light.first_primitive};
+    light.crowded = scene_->geometry->crowded(id, light.primitives, box.min, box.max);
+  }
   return absl::OkStatus();
 }
 

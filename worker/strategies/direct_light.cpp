@@ -23,7 +23,7 @@ double expected_count(const PreparedMix::Slot& slot, double draws) {
 
 /// Where a shadow segment to a sample of a flat light ends.
 LightEnd end_on_light(const LightPoint& at, const AreaEmitter& light) {
-  return {at.p, at.n, {kNone, light.mesh, light.first_primitive}, light.primitives};
+  return {at.p, at.n, {kNone, light.mesh, light.first_primitive}, light.primitives, light.crowded};
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "tests/bench/geometry/line_workload.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -70,8 +71,14 @@ class Generator {
     if (hb < 0) b += (a - b) * (hb / (hb - ha));
     point.lines.push_back({x, a, b, light.id, light.primitives});
     const Vec3d on_light = Vec3d(a) + (Vec3d(b) - Vec3d(a)) * double{uniform()};
+    const Vec3f corner = light.o + light.u + light.v;
+    Vec3f lo, hi;
+    for (int k = 0; k < 3; ++k)
+      lo[k] = std::min({light.o[k], corner[k], light.o[k] + light.u[k], light.o[k] + light.v[k]}),
+      hi[k] = std::max({light.o[k], corner[k], light.o[k] + light.u[k], light.o[k] + light.v[k]});
+    const bool crowded = geometry_.crowded(light.id, light.primitives, lo, hi);
     point.points.push_back(
-        {on_light, Vec3d(light.u).cross(Vec3d(light.v)).normalized(), light.id, light.primitives});
+        {on_light, Vec3d(light.u).cross(Vec3d(light.v)).normalized(), light.id, light.primitives, crowded});
   }
 
   const Geometry& geometry_;

@@ -136,5 +136,28 @@ TEST(LightEnd, AClosedLightHidesItsFarSide) {
   }
 }
 
+/// A light that has nothing close to it needs no judging; the answers are the same.
+TEST(LightEnd, CrowdedIsWhatHasSomethingClose) {
+  std::mt19937 engine(5);
+  const Frame f{{-0.5, 2, -0.5}, {1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
+  const TriangleMesh light = f.quad(0, 1, 0, 1, 0), floor = f.quad(-2, 3, -2, 3, 2);
+  const PrimitiveId id{kNone, 0, 0};
+  for (const double before : {0.5, 0.1, 1e-3, 1e-6, 0.0, -1e-3, -0.1}) {
+    const TriangleMesh cover = f.quad(0.25, 0.75, 0.25, 0.75, before);
+    const Geometry geometry = geometry_of({{&light}, {&floor}, {&cover}});
+    const bool crowded = geometry.crowded(id, 2, light.positions[0], light.positions[2]);
+    EXPECT_EQ(crowded, std::abs(before) < 0.01) << before;
+    QueryCounters counters;
+    std::uniform_real_distribution<double> uniform(-0.4, 1.4);
+    for (int i = 0; i < kRays; ++i) {
+      const Vec3f x(f.o + f.u * uniform(engine) + f.v * uniform(engine) + f.n * 1.9);
+      LightEnd end{f.o + f.u * 0.5 + f.v * 0.5, f.n, id, 2};
+      const bool judged = geometry.occluded(x, end, counters);
+      end.crowded = crowded;
+      EXPECT_EQ(geometry.occluded(x, end, counters), judged) << before;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace penumbra
