@@ -3,9 +3,9 @@
 #include <Imath/ImathBox.h>
 #include <embree3/rtcore.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <algorithm>
 #include <limits>
 #include <string>
 
@@ -94,19 +94,41 @@ bool ray_hits(RTCScene scene, RTCIntersectContext& context, const Vec3f& x, cons
 struct Surfaces {
   std::vector<const TriangleMesh*> meshes;
   std::vector<Matrix> to_world;  ///< of the instances
+  float extent = 0;              ///< Σ of the three extents of all of them
 
   const Vec3f& vertex(uint32_t mesh, uint32_t primitive, int corner) const {
     const TriangleMesh& m = *meshes[mesh];
     return m.positions[m.indices[3 * size_t{primitive} + static_cast<size_t>(corner)]];
   }
-  /// Of the light that a segment ends on.
-  Imath::Box3f bounds(const LightEnd& end) const {
-    Imath::Box3f box(Vec3f(end.p));
-    for (uint32_t i = 0; i < end.light_primitives; ++i)
-      for (int c = 0; c < 3; ++c) box.extendBy(vertex(end.light.mesh, end.light.primitive + i, c));
-    return box;
+  /// In the world.
+  void triangle(const PrimitiveId& id, Vec3d p[3]) const {
+    for (int c = 0; c < 3; ++c) {
+      p[c] = Vec3d(vertex(id.mesh, id.primitive, c));
+      const Vec3d in_object = p[c];
+      if (id.instance != kNone) to_world[id.instance].multVecMatrix(in_object, p[c]);
+    }
   }
 };
+
+/// Embree's context of a ray that collects what it meets of some meshes.
+struct CollectContext {
+  RTCIntersectContext embree;  // first: the filter is given its address
+  const Surfaces* surfaces;
+  const std::vector<bool>* marked;
+  std::vector<Meeting>* out;
+};
+
+/// Embree's filter: notes a hit, and the ray goes on.
+void collect_filter(const RTCFilterFunctionNArguments* arguments) {
+  const auto& context = *reinterpret_cast<const CollectContext*>(arguments->context);
+  const auto& hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
+  arguments->valid[0] = 0;
+  if (hit.instID[0] != RTC_INVALID_GEOMETRY_ID || !(*context.marked)[hit.geomID]) return;
+  Vec3d p[3];
+  for (int c = 0; c < 3; ++c) p[c] = Vec3d(context.surfaces->vertex(hit.geomID, hit.primID, c));
+  const double u = hit.u, v = hit.v;
+  context.out->push_back({{kNone, hit.geomID, hit.primID}, p[0] * (1 - u - v) + p[1] * u + p[2] * v});
+}
 
 /// Embree's context of a segment that ends on a light, with what its filter needs.
 struct ApproachContext {
@@ -121,7 +143,7 @@ void approach_filter(const RTCFilterFunctionNArguments* arguments) {
   const auto& context = *reinterpret_cast<const ApproachContext*>(arguments->context);
   const auto& ray = *reinterpret_cast<const RTCRay*>(arguments->ray);
   const auto& hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
-  if (ray.tfar < 1 - context.approach.doubt()) return;  // the ray's tfar is the hit's distance here
+  if (ray.tfar < LightApproach::kJudged) return;  // the ray's tfar is the hit's distance here
   const LightEnd& end = *context.end;
   const bool placed = hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
   if (!placed && hit.geomID == end.light.mesh && hit.primID - end.light.primitive < end.light_primitives) {
@@ -129,23 +151,25 @@ void approach_filter(const RTCFilterFunctionNArguments* arguments) {
     return;
   }
   const Surfaces& all = *context.surfaces;
+  const auto instance = placed ? hit.instID[0] - static_cast<uint32_t>(all.meshes.size()) : kNone;
   Vec3d surface[3];
-  for (int c = 0; c < 3; ++c) {
-    surface[c] = Vec3d(all.vertex(hit.geomID, hit.primID, c));
-    if (!placed) continue;
-    const Vec3d in_object = surface[c];
-    all.to_world[hit.instID[0] - all.meshes.size()].multVecMatrix(in_object, surface[c]);
-  }
-  if (!context.approach.hides(surface, all.bounds(end))) arguments->valid[0] = 0;
+  all.triangle({instance, hit.geomID, hit.primID}, surface);
+  if (!context.approach.hides(surface)) arguments->valid[0] = 0;
 }
 
 bool approach_hits(RTCScene scene, const Surfaces& surfaces, const Vec3f& x, const LightEnd& y) {
   ApproachContext context{{}, &surfaces, &y, LightApproach(x, y)};
   rtcInitIntersectContext(&context.embree);
-  if (context.approach.alone())  // as far as before the light, and no filter
-    return ray_hits(scene, context.embree, x, context.approach.way(), 1 - context.approach.doubt());
+  if (context.approach.alone())  // to just before the light, and no filter
+    return ray_hits(scene, context.embree, x, context.approach.way(), context.approach.before());
   context.embree.filter = approach_filter;
-  return ray_hits(scene, context.embree, x, context.approach.way(), 1 + context.approach.doubt());
+  return ray_hits(scene, context.embree, x, context.approach.way(), context.approach.beyond(surfaces.extent));
+}
+
+Imath::Box3d bounds_of(const TriangleMesh& mesh) {
+  Imath::Box3d box;
+  for (const Vec3f& p : mesh.positions) box.extendBy(Vec3d(p));
+  return box;
 }
 
 /// Geometry numbers of a top scene: meshes first, then instances.
@@ -163,6 +187,7 @@ struct EmbreeScene::Parts {
   Surfaces surfaces;
   uint32_t meshes = 0;
   bool has_alpha = false;
+  std::vector<Imath::Box3d> alpha_bounds;  ///< of each alpha-tested mesh
 
   /// Scenes of the meshes that have a handle.
   Scenes assemble(const std::vector<GeometryHandle>& handles, std::span<const ObjectInput> objects,
@@ -219,6 +244,9 @@ absl::StatusOr<std::unique_ptr<EmbreeScene>> EmbreeScene::build(std::span<const 
     if (meshes[m].alpha) {
       alpha = parts.alphas.emplace_back(std::make_unique<AlphaTest>(meshes[m].alpha)).get();
       tested[m] = parts.has_alpha = true;
+      parts.alpha_bounds.push_back(bounds_of(*meshes[m].mesh));
+      for (const ObjectInput& object : objects)
+        if (m >= object.first_mesh && m < object.last_mesh) parts.alpha_bounds.back().makeInfinite();
     }
     opaque_and_alpha[m] = make_triangles(parts.device.get(), *meshes[m].mesh, alpha);
     if (!opaque_and_alpha[m]) {
@@ -233,6 +261,9 @@ absl::StatusOr<std::unique_ptr<EmbreeScene>> EmbreeScene::build(std::span<const 
     }
     parts.alpha_only = parts.assemble(opaque_and_alpha, objects, instances);
   }
+  Vec3f lo, hi;
+  scene->bounds(lo, hi);
+  if (lo.x <= hi.x) parts.surfaces.extent = (hi.x - lo.x) + (hi.y - lo.y) + (hi.z - lo.z);
   if (const RTCError error = rtcGetDeviceError(parts.device.get()); error != RTC_ERROR_NONE) {
     return make_status(absl::StatusCode::kResourceExhausted, "Embree error {} while building",
                        static_cast<int>(error));
@@ -263,6 +294,29 @@ std::optional<Hit> EmbreeScene::intersect(const Ray& ray) const {
   return hit;
 }
 
+void EmbreeScene::beside(const Ray& ray, const Hit& first, const std::vector<bool>& marked,
+                         std::vector<Meeting>& out) const {
+  out.clear();
+  const Surfaces& all = parts_->surfaces;
+  Vec3d p[3];
+  all.triangle(first.id, p);
+  const Vec3d n = (p[1] - p[0]).cross(p[2] - p[0]).normalized(),
+              way = Vec3d(ray.direction) * double{first.distance};
+  const Vec3d end = Vec3d(ray.origin) + way;
+  const auto norm1 = [](const Vec3d& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
+  const float doubt = LightApproach::doubt(static_cast<float>(norm1(end) + norm1(way)) + all.extent,
+                                           static_cast<float>(std::abs(n.dot(way))));
+  CollectContext context{{}, &all, &marked, &out};
+  rtcInitIntersectContext(&context.embree);
+  context.embree.filter = collect_filter;
+  RTCRay query;
+  query.org_x = ray.origin.x, query.org_y = ray.origin.y, query.org_z = ray.origin.z;
+  query.dir_x = ray.direction.x, query.dir_y = ray.direction.y, query.dir_z = ray.direction.z;
+  query.tnear = first.distance * (1 - doubt), query.tfar = first.distance * (1 + doubt);
+  query.time = 0, query.mask = ~0u, query.id = 0, query.flags = 0;
+  rtcOccluded1(parts_->all.top.get(), &context.embree, &query);
+}
+
 bool EmbreeScene::occluded(const Vec3f& x, const Vec3f& y) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
@@ -279,6 +333,19 @@ bool EmbreeScene::occluded_by_alpha(const Vec3f& x, const LightEnd& y) const {
 
 bool EmbreeScene::has_alpha() const {
   return parts_->has_alpha;
+}
+
+Imath::Box3f EmbreeScene::bounds(const PrimitiveId& first, uint32_t primitives) const {
+  Imath::Box3f box;
+  for (uint32_t i = 0; i < primitives; ++i)
+    for (int c = 0; c < 3; ++c) box.extendBy(parts_->surfaces.vertex(first.mesh, first.primitive + i, c));
+  return box;
+}
+
+bool EmbreeScene::alpha_meets(const Imath::Box3d& box) const {
+  for (const Imath::Box3d& alpha : parts_->alpha_bounds)
+    if (alpha.intersects(box)) return true;
+  return false;
 }
 
 void EmbreeScene::bounds(Vec3f& lo, Vec3f& hi) const {

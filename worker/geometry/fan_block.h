@@ -119,7 +119,7 @@ class FanBlock {
     if (excluded.count != 0) cut = S::without(cut, excluded_lanes(block, excluded));
     // Mostly all cuts lie clearly between x and the light.
     const S::Floats nearer = S::min(before(fan_.near, e1), before(fan_.near, e2));
-    const S::Floats farther = S::max(before(fan_.light, e1), before(fan_.light, e2));
+    const S::Floats farther = S::max(before(fan_.light_near, e1), before(fan_.light_near, e2));
     S::Mask clear = S::both(S::less_equal(S::all(0), nearer), S::less(farther, S::all(0)));
     if (S::bits(S::without(cut, clear)) != 0) {
       const Place at1 = place(e1), at2 = place(e2);
@@ -164,9 +164,9 @@ class FanBlock {
   struct Crossings {
     S::Floats beta, t, w;
   };
-  /// Where the crossings lie along their rays: neither of these is close to x.
+  /// Where the crossings lie along their rays: none of these is close to x, or to the light.
   struct Place {
-    S::Mask front, behind, beyond, clear;  ///< clear: in front, not beyond
+    S::Mask front, behind, beyond, clear;  ///< clear: in front, before the light
   };
 
   Corner corner(const float (&p)[3][kWidth]) const {
@@ -192,8 +192,8 @@ class FanBlock {
     Place at;
     at.front = S::less_equal(S::all(0), before(fan_.near, e));
     at.behind = S::less(before(-fan_.near, e), S::all(0));
-    at.beyond = S::less_equal(S::all(0), before(fan_.light, e));
-    at.clear = S::without(at.front, at.beyond);
+    at.beyond = S::less_equal(S::all(0), before(fan_.light_far, e));
+    at.clear = S::both(at.front, S::less(before(fan_.light_near, e), S::all(0)));
     return at;
   }
 

@@ -60,6 +60,12 @@ std::optional<Hit> Geometry::intersect(const Ray& ray, QueryCounters& counters) 
   return parts_->embree->intersect(ray);
 }
 
+void Geometry::beside(const Ray& ray, const Hit& first, const std::vector<bool>& marked,
+                      std::vector<Meeting>& out, QueryCounters& counters) const {
+  ++counters.rays;
+  parts_->embree->beside(ray, first, marked, out);
+}
+
 bool Geometry::occluded(const Vec3f& x, const Vec3f& y, QueryCounters& counters) const {
   ++counters.rays;
   return parts_->embree->occluded(x, y);
@@ -80,14 +86,20 @@ bool Geometry::has_alpha() const {
   return parts_->embree->has_alpha();
 }
 
-bool Geometry::crowded(const PrimitiveId& light, uint32_t primitives, const Vec3f& lo,
-                       const Vec3f& hi) const {
-  if (parts_->embree->has_alpha() || light.instance != kNone) return true;  // not in the lines' hierarchy
+LightPlace Geometry::place_of(const PrimitiveId& light, uint32_t primitives, const Vec3d& normal) const {
+  PENUMBRA_CHECK(light.instance == kNone);
+  const Imath::Box3f box = parts_->embree->bounds(light, primitives);
+  const Vec3d lo(box.min), hi(box.max), extent = hi - lo;
+  Vec3d own = extent * 2;
+  for (int k = 0; k < 3; ++k) own[k] += std::max(std::abs(lo[k]), std::abs(hi[k]));
+  LightPlace place{rounding_along(normal, own), true};
   Vec3f scene_lo, scene_hi;
-  parts_->embree->bounds(scene_lo, scene_hi);
-  const Vec3d margin((Vec3d(scene_hi) - Vec3d(scene_lo)).length() * LightApproach::kClose);
-  const Excluded own{parts_->lines.first_triangle[light.mesh] + light.primitive, primitives};
-  return anything_meets(parts_->lines, Vec3d(lo) - margin, Vec3d(hi) + margin, own);
+  bounds(scene_lo, scene_hi);
+  const Vec3d margin(LightApproach::closest(own, Vec3d(scene_hi) - Vec3d(scene_lo)));
+  const Excluded excluded{parts_->lines.first_triangle[light.mesh] + light.primitive, primitives};
+  place.crowded = anything_meets(parts_->lines, lo - margin, hi + margin, excluded) ||
+                  parts_->embree->alpha_meets({lo - margin, hi + margin});
+  return place;
 }
 
 void Geometry::visible(std::span<const LineQuery> queries, std::vector<IntervalSet>& out,

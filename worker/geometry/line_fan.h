@@ -14,28 +14,31 @@
 
 #include "scenes/math.h"
 #include "worker/geometry/intervals.h"
+#include "worker/geometry/light_plane.h"
 
 namespace penumbra {
 
-/// Unit roundoff of binary32.
-constexpr double kFloatRoundoff = 0x1p-24;
-
 struct LineFan {
   // Single precision: what vectors compute with.
-  Vec3f x, g, beta, t;  ///< functionals of p - x
-  float light = 0;      ///< t at which an occluder is no longer in front of the light
-  float near = 0;       ///< |t| below this is decided in double precision (see make_fan)
-  float error = 0;      ///< bound of the rounding errors of where an edge crosses the plane
+  Vec3f x, g, beta, t;                  ///< functionals of p - x
+  float light_near = 0, light_far = 0;  ///< t is before the light below the one, beyond it from the other on
+  float near = 0;                       ///< |t| below this is decided in double precision (see make_fan)
+  float error = 0;                      ///< bound of the rounding errors of where an edge crosses the plane
 
   // Double precision: the same fan for the few edges that need it.
   Vec3d x_exact, a, b;  ///< a, b relative to x
   Vec3d g_exact, beta_exact, t_exact;
+  double light = 0;        ///< t on the light's line
+  Vec3d plane;             ///< normal of the light's plane, any length; 0: not known. Measured along it:
+  double height = 0;       ///< of x over that plane
+  double rounding = 0;     ///< by which the light's points may be off their plane
   double slack = 0;        ///< length by which boxes are widened, so that no rounding of the above is culled
   bool degenerate = true;  ///< x, a and b are collinear: the fan has no area
 };
 
 /// Fan of (x, x+a, x+b) in the coordinates of one tree. `reach`: no vertex is farther from x than this.
-LineFan make_fan(const Vec3d& x, const Vec3d& a, const Vec3d& b, double reach);
+/// `plane`: of the light, in the same coordinates; not known: the plane across the fan.
+LineFan make_fan(const Vec3d& x, const Vec3d& a, const Vec3d& b, double reach, const LightPlane& plane = {});
 
 /// !make_fan(x, a, b, …).degenerate, for less.
 bool has_area(const Vec3d& a, const Vec3d& b);

@@ -20,14 +20,15 @@ class LineWalk {
     widest_ = 0;
     const Vec3d x(query.x), a = Vec3d(query.a) - x, b = Vec3d(query.b) - x;
     const LineTree& frame = bvh_.world.nodes.empty() ? bvh_.instance_tree : bvh_.world;
-    const LineFan fan = make_fan(x, a, b, frame.nodes.empty() ? 0 : frame.reach(x));
+    const LightPlane plane = chord_plane(query);
+    const LineFan fan = make_fan(x, a, b, frame.nodes.empty() ? 0 : frame.reach(x), plane);
     out.clear();
     if (fan.degenerate) return;  // a chord seen end on has no width to be seen by
     if (!bvh_.world.nodes.empty()) {
       triangles(bvh_.world, fan, excluded_in(bvh_, query, kNone), workspace_.stack.data(),
                 workspace_.leaves.data());
     }
-    if (!bvh_.instance_tree.nodes.empty() && !visible_.empty()) placed_objects(x, a, b);
+    if (!bvh_.instance_tree.nodes.empty() && !visible_.empty()) placed_objects(x, a, b, plane);
     // A neighbour of a lit point is mostly lit: then there is nothing to try first.
     workspace_.occluder_tree = widest_ > 0 && occluder_world_ ? bvh_.id : 0;
     workspace_.occluder = occluder_;
@@ -35,8 +36,8 @@ class LineWalk {
   }
 
  private:
-  void placed_objects(const Vec3d& x, const Vec3d& a, const Vec3d& b) {
-    const LineFan fan = make_fan(x, a, b, bvh_.instance_tree.reach(x));
+  void placed_objects(const Vec3d& x, const Vec3d& a, const Vec3d& b, const LightPlane& plane) {
+    const LineFan fan = make_fan(x, a, b, bvh_.instance_tree.reach(x), plane);
     walk(bvh_.instance_tree, fan, workspace_.stack.data(), workspace_.leaves.data(),
          [&](const uint32_t* found, int count, uint32_t* stack, uint32_t* leaves) {
            for (int i = 0; i < count && !visible_.empty(); ++i) {
@@ -46,7 +47,8 @@ class LineWalk {
              placed.to_object.multVecMatrix(x, ox);
              placed.to_object.multDirMatrix(a, oa);
              placed.to_object.multDirMatrix(b, ob);
-             const LineFan object_fan = make_fan(ox, oa, ob, tree.reach(ox));
+             const LineFan object_fan =
+                 make_fan(ox, oa, ob, tree.reach(ox), placed_plane(plane, a, b, placed.to_object));
              if (object_fan.degenerate) continue;
              triangles(tree, object_fan, excluded_in(bvh_, *query_, found[i]), stack, leaves);
            }

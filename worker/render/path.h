@@ -22,7 +22,7 @@ class PathTracer {
   Rgb emission(const CameraRay& ray);
 
  private:
-  Rgb emitted(const Hit& hit, const Ray& ray) const;
+  Rgb emitted(const Hit& hit, const Ray& ray);
   Rgb background(const Vec3f& direction) const;
   /// One specular lobe, drawn in proportion to its throughput; false where there is none.
   bool bounce(const ShadingPoint& point, const PassSampler& sampler, int depth, Vec3f& direction, Rgb& throughput) const;

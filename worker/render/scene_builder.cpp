@@ -1,7 +1,5 @@
 #include "worker/render/scene_builder.h"
 
-#include <Imath/ImathBox.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -160,12 +158,12 @@ absl::Status RenderSceneBuilder::build_geometry() {
     inputs.push_back({&scene_->meshes[m].mesh, alpha_test(m), visible_[m]});
   ASSIGN_OR_RETURN(scene_->geometry, Geometry::build(inputs, objects_, placed_, options_.threads));
   for (AreaEmitter& light : scene_->lights.area) {
-    const TriangleMesh& mesh = scene_->meshes[light.mesh].mesh;
-    Imath::Box3f box;
-    for (size_t i = 0; i < 3 * size_t{light.primitives}; ++i)
-      box.extendBy(mesh.positions[mesh.indices[3 * size_t{light.first_primitive} + i]]);
+    if (!light.flat) continue;
     const PrimitiveId id{kNone, light.mesh, light.first_primitive};
-    light.crowded = scene_->geometry->crowded(id, light.primitives, box.min, box.max);
+    const LightPlace place =
+        scene_->geometry->place_of(id, light.primitives, emission_normal(light.shape, Vec3d(0)));
+    light.rounding = place.rounding;
+    light.crowded = place.crowded;
   }
   return absl::OkStatus();
 }

@@ -1,6 +1,5 @@
 #include "tests/bench/geometry/line_workload.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -69,16 +68,12 @@ class Generator {
     if (ha <= 0 && hb <= 0) return;
     if (ha < 0) a += (b - a) * (ha / (ha - hb));
     if (hb < 0) b += (a - b) * (hb / (hb - ha));
-    point.lines.push_back({x, a, b, light.id, light.primitives});
     const Vec3d on_light = Vec3d(a) + (Vec3d(b) - Vec3d(a)) * double{uniform()};
-    const Vec3f corner = light.o + light.u + light.v;
-    Vec3f lo, hi;
-    for (int k = 0; k < 3; ++k)
-      lo[k] = std::min({light.o[k], corner[k], light.o[k] + light.u[k], light.o[k] + light.v[k]}),
-      hi[k] = std::max({light.o[k], corner[k], light.o[k] + light.u[k], light.o[k] + light.v[k]});
-    const bool crowded = geometry_.crowded(light.id, light.primitives, lo, hi);
-    point.points.push_back(
-        {on_light, Vec3d(light.u).cross(Vec3d(light.v)).normalized(), light.id, light.primitives, crowded});
+    const Vec3d normal = Vec3d(light.u).cross(Vec3d(light.v)).normalized();
+    const LightPlace place = geometry_.place_of(light.id, light.primitives, normal);
+    const LightPlane plane{normal, place.rounding};
+    point.lines.push_back({x, a, b, light.id, light.primitives, plane});
+    point.points.push_back({on_light, plane, light.id, light.primitives, place.crowded});
   }
 
   const Geometry& geometry_;

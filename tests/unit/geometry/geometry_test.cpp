@@ -12,7 +12,7 @@ namespace {
 
 /// A point on a light that is not there itself, facing down.
 LightEnd alone(const Vec3d& p) {
-  return {p, {0, 0, -1}, {}};
+  return {p, {{0, 0, -1}}, {}};
 }
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();

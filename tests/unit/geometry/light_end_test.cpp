@@ -39,6 +39,12 @@ Geometry geometry_of(const std::vector<MeshInput>& inputs, const std::vector<Obj
   return std::move(*geometry);
 }
 
+/// A point of the light, which is mesh 0.
+LightEnd end_on(const Geometry& geometry, const Frame& f, const Vec3d& p) {
+  const PrimitiveId id{kNone, 0, 0};
+  return {p, {f.n, geometry.place_of(id, 2, f.n).rounding}, id, 2};
+}
+
 /// Of `rays` segments from points before the light to points of it, how many are hidden. The light is mesh 0.
 int hidden(const Geometry& geometry, const Frame& f, std::mt19937& engine, int rays) {
   std::uniform_real_distribution<double> uniform(0, 1);
@@ -48,10 +54,30 @@ int hidden(const Geometry& geometry, const Frame& f, std::mt19937& engine, int r
     const double height = i % 3 == 0 ? 0.01 : 1.5;
     const Vec3f x(f.o + f.u * (4 * uniform(engine) - 2) + f.v * (4 * uniform(engine) - 2) +
                   f.n * height * (0.5 + uniform(engine)));
-    const LightEnd end{f.o + f.u * uniform(engine) + f.v * uniform(engine), f.n, {kNone, 0, 0}, 2};
+    const LightEnd end = end_on(geometry, f, f.o + f.u * uniform(engine) + f.v * uniform(engine));
     count += geometry.occluded(x, end, counters);
   }
   return count;
+}
+
+/// Of `lines` chords of the light from points before it, the mean visible part.
+double seen_by_lines(const Geometry& geometry, const Frame& f, std::mt19937& engine, int lines) {
+  std::uniform_real_distribution<double> uniform(0, 1);
+  const PrimitiveId id{kNone, 0, 0};
+  const LightPlane plane{f.n, geometry.place_of(id, 2, f.n).rounding};
+  QueryCounters counters;
+  std::vector<IntervalSet> visible;
+  double sum = 0;
+  for (int i = 0; i < lines; ++i) {
+    const double height = i % 3 == 0 ? 0.01 : 1.5;
+    const Vec3f x(f.o + f.u * (4 * uniform(engine) - 2) + f.v * (4 * uniform(engine) - 2) +
+                  f.n * height * (0.5 + uniform(engine)));
+    const auto on_light = [&] { return Vec3f(f.o + f.u * uniform(engine) + f.v * uniform(engine)); };
+    const LineQuery query{x, on_light(), on_light(), id, 2, plane};
+    geometry.visible({&query, 1}, visible, counters);
+    sum += visible[0].length();
+  }
+  return sum / lines;
 }
 
 constexpr int kRays = 300;
@@ -71,6 +97,25 @@ TEST(LightEnd, WhatIsBeforeItHidesItAndWhatIsInItsPlaneOrBehindDoesNot) {
             << "away " << away << ", before " << before;
       }
     }
+}
+
+TEST(LightEnd, LinesSeeCoversAsRaysDo) {
+  std::mt19937 engine(6);
+  for (const double away : {0.0, 2.0, 50.0})
+    for (const double size : {1.5, 30.0, 1000.0})
+      for (int i = 0; i < 20; ++i) {
+        const Frame f = Frame::random(engine, away);
+        const double step = 8 * kRoundoff * (away + 2 * size);
+        const TriangleMesh light = f.quad(0, 1, 0, 1, 0);
+        for (const double before : {step, 4 * step, 0.0, -step, -4 * step}) {
+          const TriangleMesh cover = f.quad(-size, size + 1, -size, size, before);
+          const Geometry geometry = geometry_of({{&light}, {&cover}});
+          EXPECT_EQ(seen_by_lines(geometry, f, engine, kRays), before > 0 ? 0 : 1)
+              << "away " << away << ", size " << size << ", before " << before;
+          EXPECT_EQ(hidden(geometry, f, engine, kRays), before > 0 ? kRays : 0)
+              << "away " << away << ", size " << size << ", before " << before;
+        }
+      }
 }
 
 TEST(LightEnd, AxisAlignedCoversCountFromTwoUnitsOfTheLastPlace) {
@@ -101,7 +146,7 @@ TEST(LightEnd, InstancesAndAlphaAreJudgedAlike) {
     const Geometry instanced = geometry_of({{&light}, {&placed}}, {{1, 2}}, {{0, to_world}});
     EXPECT_EQ(hidden(instanced, f, engine, kRays), before > 0 ? kRays : 0);
     QueryCounters counters;
-    const LightEnd end{f.o + f.u * 0.5 + f.v * 0.5, f.n, {kNone, 0, 0}, 2};
+    const LightEnd end = end_on(instanced, f, f.o + f.u * 0.5 + f.v * 0.5);
     const Vec3f x(f.o + f.n);
     for (const bool solid : {true, false}) {
       const AlphaTest alpha = [=](uint32_t, float, float) { return solid; };
@@ -131,8 +176,10 @@ TEST(LightEnd, AClosedLightHidesItsFarSide) {
     const double side = n.dot(p[0]) < 0 ? -1 : 1;  // the centre is the origin
     const double a = std::sqrt(uniform(engine)), b = uniform(engine);
     const Vec3d at = p[0] * (1 - a) + p[1] * (a * (1 - b)) + p[2] * (a * b);
+    const PrimitiveId id{kNone, 0, triangle};
+    const double rounding = geometry.place_of(id, 1, n).rounding;
     const bool faces = side * n.dot(Vec3d(x) - at) > 0;
-    EXPECT_EQ(geometry.occluded(x, {at, n, {kNone, 0, triangle}, 1}, counters), !faces);
+    EXPECT_EQ(geometry.occluded(x, {at, {n, rounding}, id, 1}, counters), !faces);
   }
 }
 
@@ -142,16 +189,16 @@ TEST(LightEnd, CrowdedIsWhatHasSomethingClose) {
   const Frame f{{-0.5, 2, -0.5}, {1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
   const TriangleMesh light = f.quad(0, 1, 0, 1, 0), floor = f.quad(-2, 3, -2, 3, 2);
   const PrimitiveId id{kNone, 0, 0};
-  for (const double before : {0.5, 0.1, 1e-3, 1e-6, 0.0, -1e-3, -0.1}) {
+  for (const double before : {0.5, 1e-3, 1e-4, 1e-6, 0.0, -1e-6, -1e-3, -0.1}) {
     const TriangleMesh cover = f.quad(0.25, 0.75, 0.25, 0.75, before);
     const Geometry geometry = geometry_of({{&light}, {&floor}, {&cover}});
-    const bool crowded = geometry.crowded(id, 2, light.positions[0], light.positions[2]);
-    EXPECT_EQ(crowded, std::abs(before) < 0.01) << before;
+    const bool crowded = geometry.place_of(id, 2, f.n).crowded;
+    EXPECT_EQ(crowded, std::abs(before) < 3e-5) << before;
     QueryCounters counters;
     std::uniform_real_distribution<double> uniform(-0.4, 1.4);
     for (int i = 0; i < kRays; ++i) {
       const Vec3f x(f.o + f.u * uniform(engine) + f.v * uniform(engine) + f.n * 1.9);
-      LightEnd end{f.o + f.u * 0.5 + f.v * 0.5, f.n, id, 2};
+      LightEnd end = end_on(geometry, f, f.o + f.u * 0.5 + f.v * 0.5);
       const bool judged = geometry.occluded(x, end, counters);
       end.crowded = crowded;
       EXPECT_EQ(geometry.occluded(x, end, counters), judged) << before;
