@@ -138,7 +138,7 @@ Box bounds_of(std::span<const Box> boxes) {
   return all;
 }
 
-absl::Status build_tree(std::span<const Box> boxes, const TriangleList* triangles, const TreeBuilder& builder,
+absl::Status build_tree(std::span<const Box> boxes, const TriangleList* triangles, TreeBuilder& builder,
                         LineTree& tree) {
   if (boxes.empty()) return absl::OkStatus();
   const int leaf_size = triangles == nullptr ? 1 : kWidth;
@@ -185,8 +185,7 @@ Box placed_bounds(const LineTree& tree, const Matrix& to_world) {
   return box;
 }
 
-absl::Status place_instances(LineBvh& bvh, std::span<const InstanceInput> instances,
-                             const TreeBuilder& builder) {
+absl::Status place_instances(LineBvh& bvh, std::span<const InstanceInput> instances, TreeBuilder& builder) {
   std::vector<Box> boxes;
   std::vector<uint32_t> numbers;
   bvh.instances.resize(instances.size());
@@ -230,7 +229,7 @@ absl::StatusOr<LineBvh> build_line_bvh(std::span<const MeshInput> meshes,
                                        std::span<const ObjectInput> objects,
                                        std::span<const InstanceInput> instances, int threads) {
   RETURN_IF_ERROR(check_line_input(meshes, instances));
-  const TreeBuilder builder(threads);
+  TreeBuilder builder(threads);
   static std::atomic<uint64_t> built{0};
   LineBvh bvh;
   bvh.id = ++built;
