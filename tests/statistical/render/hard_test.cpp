@@ -153,8 +153,8 @@ std::string covered_light(const Vec3d& o, const Vec3d& u, const Vec3d& v, double
                   double(float(p.z)));
     return std::string(text);
   };
-  const Vec3d c = o + n * before, eye = o + n * 2.0 + u * 3.0, at = o + n * 2.0;
-  std::string text = "LookAt " + point(eye) + point(at - n * 0.7) + point(n) + R"(
+  const Vec3d c = o + n * before, eye = o + n * 0.6 + u * 3.0, at = o + n * 1.3;
+  std::string text = "LookAt " + point(eye) + point(at) + point(n) + R"(
 Camera "perspective" "float fov" 60
 WorldBegin
 Material "matte" "rgb Kd" [ 0.5 0.5 0.5 ]
