@@ -46,6 +46,7 @@ absl::StatusOr<JobSpec> read(const Json& json) {
   spec.strict = json.at("strict").get<bool>();
   spec.plan = json.at("plan").get<std::vector<int64_t>>();
   spec.reference = json.at("reference").get<std::string>();
+  spec.leave_out = json.value("leave_out", std::vector<std::string>());
   for (const auto& [name, rect] : json.at("regions").items()) spec.regions.push_back({name, rect_of(rect)});
   if (spec.width < 1 || spec.height < 1 || spec.crop.area() <= 0 ||
       !contains({0, 0, spec.width, spec.height}, spec.crop))
@@ -101,7 +102,8 @@ Json to_json(const JobSpec& spec) {
           {"auto_plans", auto_plans_json(spec, spec.auto_plans)},
           {"earlier_plans", earlier_plans_json(spec.earlier_plans)},
           {"reference", spec.reference},
-          {"regions", regions}};
+          {"regions", regions},
+          {"leave_out", spec.leave_out}};
 }
 
 absl::StatusOr<JobSpec> job_from_json(const Json& json) {

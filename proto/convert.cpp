@@ -89,6 +89,9 @@ static absl::StatusOr<std::vector<Region>> regions_from_proto(const v1::JobSpec&
 }
 
 /// Edges and counts that must agree with each other.
+// There are fewer than that.
+constexpr int kMostLeftOut = 32;
+
 static absl::Status check_spec(const JobSpec& spec) {
   RETURN_IF_ERROR(check_range("width", spec.width, 1, kMostEdge));
   RETURN_IF_ERROR(check_range("height", spec.height, 1, kMostEdge));
@@ -181,6 +184,7 @@ v1::JobSpec to_proto(const JobSpec& spec) {
     *added->mutable_rect() = to_proto(region.rect);
   }
   if (spec.probe) *out.mutable_probe() = to_proto(*spec.probe);
+  for (const std::string& effect : spec.leave_out) out.add_leave_out(effect);
   return out;
 }
 
@@ -214,6 +218,12 @@ absl::StatusOr<JobSpec> from_proto(const v1::JobSpec& message) {
     ASSIGN_OR_RETURN(spec.probe, from_proto(message.probe()));
     if (spec.probe->kind == Probe::Kind::kIntegrand && spec.probe->slots.size() != spec.mixes.size())
       return invalid_input("probe.slots: {} for {} mixes", spec.probe->slots.size(), spec.mixes.size());
+  }
+  if (message.leave_out_size() > kMostLeftOut)
+    return invalid_input("leave_out: {} effects, at most {}", message.leave_out_size(), kMostLeftOut);
+  for (const std::string& effect : message.leave_out()) {
+    RETURN_IF_ERROR(check_text("leave_out", effect));
+    spec.leave_out.push_back(effect);
   }
   RETURN_IF_ERROR(check_spec(spec));
   return spec;

@@ -124,6 +124,8 @@ struct JobSpec {
   std::string reference;                   ///< path on the client's machine, for people and `fetch`
   std::vector<Region> regions;
   std::optional<Probe> probe;
+  /// Effects of the scene (scenes/needs.h) that are not rendered: what they cost is measured against that.
+  std::vector<std::string> leave_out;
   bool operator==(const JobSpec&) const = default;
 };
 

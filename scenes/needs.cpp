@@ -121,17 +121,6 @@ bool is_rough(const Params& params, double fallback) {
   return may_differ(params, "uroughness", 0) && may_differ(params, "vroughness", 0);
 }
 
-bool is_specular(const MaterialEntity& material) {
-  const Params& params = material.params;
-  if (material.type == "mirror" || material.type == "thindielectric") return true;
-  if (material.type == "glass" || material.type == "dielectric" || material.type == "conductor")
-    return !is_rough(params, 0);
-  if (material.type == "metal") return !is_rough(params, 0.01);
-  if (material.type == "uber")
-    return may_differ(params, "Kr", 0) || may_differ(params, "Kt", 0) || may_differ(params, "opacity", 1);
-  return false;
-}
-
 Why specular(const Scene& scene) {
   for (const MaterialEntity* material : worn_materials(scene))
     if (is_specular(*material)) return fmt::format("{} at {}", material->type, scene.place(material->loc));
@@ -150,6 +139,17 @@ constexpr Effect kEffects[] = {
 };
 
 }  // namespace
+
+bool is_specular(const MaterialEntity& material) {
+  const Params& params = material.params;
+  if (material.type == "mirror" || material.type == "thindielectric") return true;
+  if (material.type == "glass" || material.type == "dielectric" || material.type == "conductor")
+    return !is_rough(params, 0);
+  if (material.type == "metal") return !is_rough(params, 0.01);
+  if (material.type == "uber")
+    return may_differ(params, "Kr", 0) || may_differ(params, "Kt", 0) || may_differ(params, "opacity", 1);
+  return false;
+}
 
 std::vector<Need> needs_of(const SceneDescription& description) {
   std::vector<Need> needs;

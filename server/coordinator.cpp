@@ -14,6 +14,8 @@ namespace {
 constexpr double kMostWaitSeconds = 5;
 // The loop wakes at least this often, so that a deadline is never missed by more.
 constexpr double kMostSleepSeconds = 1;
+// Time between the store's rests: what it does then is no matter of a single commit.
+constexpr double kRestSeconds = 1;
 
 }  // namespace
 
@@ -89,16 +91,15 @@ uint64_t Coordinator::wait_for_change(uint64_t revision, double seconds) {
 }
 
 absl::StatusOr<std::vector<PutLog>> Coordinator::worker_logs(const JobId& id, std::optional<uint64_t> tile,
-                                                             size_t most) {
+                                                             size_t most_bytes) {
   using Logs = absl::StatusOr<std::vector<PutLog>>;
   absl::StatusOr<Logs> logs = call([&](Scheduler& scheduler, const Now&) -> Logs {
     const JobRecord* job = scheduler.find(id);
     if (job == nullptr) return make_status(absl::StatusCode::kNotFound, "no job {}", id);
-    if (!tile) return store_->logs(id, 1, 0, most);
+    if (!tile) return store_->logs(id, 1, 0, most_bytes);
     // Ids go round and round the tiles, the pilot's as the run's (server/planner.h).
-    if (*tile >= job->tiles().size())
-      return invalid_input("--tile: {} is not below {}, the number of tiles", *tile, job->tiles().size());
-    return store_->logs(id, job->tiles().size(), *tile, most);
+    RETURN_IF_ERROR(job->check_tile(*tile));
+    return store_->logs(id, job->tiles().size(), *tile, most_bytes);
   });
   if (!logs.ok()) return logs.status();
   return *std::move(logs);
@@ -157,12 +158,27 @@ absl::Status Coordinator::commit() {
   return store_->apply(changes);
 }
 
-/// What the store does while nothing waits. Its troubles are its own, except that another server leads now.
+/// What the store does when all replies are out. Its troubles are its own, except that another server leads
+/// now.
 absl::Status Coordinator::rest() {
+  const Now now = clock_();
+  if (now.steady < next_rest_) return absl::OkStatus();
+  next_rest_ = now.steady + kRestSeconds;
   const absl::Status rested = store_->rest();
   if (rested.ok() || absl::IsAborted(rested)) return rested;
   spdlog::warn("{}", message_of(rested));
   return absl::OkStatus();
+}
+
+/// The end, for whoever still waits; returns what they are told.
+absl::Status Coordinator::give_up(const absl::Status& why) {
+  spdlog::critical("the job store failed, the server ends: {}", message_of(why));
+  failed_ = true;
+  const absl::Status said = absl::UnavailableError("the server's store has failed");
+  std::vector<Finish> waiting;
+  answer_waiting(clock_(), waiting, true);
+  for (const Finish& finish : waiting) finish(said);
+  return said;
 }
 
 void Coordinator::run() {
@@ -181,14 +197,10 @@ void Coordinator::run() {
     for (const Notice& notice : scheduler_.take_notices())
       log_about(notice.detail ? spdlog::level::debug : spdlog::level::info, notice.about, notice.text);
     absl::Status durable = commit();
-    if (durable.ok() && batch.empty()) durable = rest();
-    if (!durable.ok()) {
-      spdlog::critical("the job store failed, the server ends: {}", message_of(durable));
-      failed_ = true;
-      durable = absl::UnavailableError("the server's store has failed");
-      answer_waiting(now, finished, true);
-    }
+    if (!durable.ok()) durable = give_up(durable);
     for (const Finish& finish : finished) finish(durable);
+    if (const absl::Status rested = failed_ ? absl::OkStatus() : rest(); !rested.ok())
+      (void)give_up(rested);  // nobody waits for what it says
     const std::lock_guard lock(mutex_);
     published_revision_ = scheduler_.revision();
     changed_.notify_all();

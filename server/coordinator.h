@@ -68,9 +68,10 @@ class Coordinator {
   /// Returns when anything has happened since `revision`, or after the timeout; gives the new revision.
   uint64_t wait_for_change(uint64_t revision, double seconds);
 
-  /// What workers logged of a job's tasks, or of one tile's: the latest `most` attempts, oldest first.
+  /// What workers logged of a job's tasks, or of one tile's: the latest attempts of no more than `most_bytes`
+  /// together, oldest first. NotFound: no such job. InvalidArgument: no such tile.
   absl::StatusOr<std::vector<PutLog>> worker_logs(const JobId& job, std::optional<uint64_t> tile,
-                                                  size_t most);
+                                                  size_t most_bytes);
 
   const BlobFolder& blobs() const { return blobs_; }
 
@@ -97,6 +98,7 @@ class Coordinator {
   void answer_waiting(const Now& now, std::vector<Finish>& finished, bool all);
   absl::Status commit();
   absl::Status rest();
+  absl::Status give_up(const absl::Status& why);
 
   std::unique_ptr<JobStore> store_;
   BlobFolder blobs_;
@@ -105,6 +107,7 @@ class Coordinator {
   Scheduler scheduler_;
   std::list<Waiting> waiting_;
   uint64_t answered_revision_ = 0;
+  double next_rest_ = 0;  ///< Now::steady
 
   std::mutex mutex_;
   std::condition_variable posted_, changed_;

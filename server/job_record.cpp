@@ -204,4 +204,9 @@ absl::Status JobRecord::restore(const StoredJob& stored) {
   return absl::OkStatus();
 }
 
+absl::Status JobRecord::check_tile(uint64_t tile) const {
+  if (tile < tiles_.size()) return absl::OkStatus();
+  return invalid_input("--tile: {} is not below {}, the number of tiles", tile, tiles_.size());
+}
+
 }  // namespace penumbra

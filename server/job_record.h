@@ -68,6 +68,8 @@ class JobRecord {
   const JobSpec& spec() const { return header.spec; }
   bool final() const { return is_final(header.state); }
   const std::vector<PixelRect>& tiles() const { return tiles_; }
+  /// InvalidArgument: a user has named a tile that is not one.
+  absl::Status check_tile(uint64_t tile) const;
   const std::optional<Plan>& plan() const { return plan_; }
   uint64_t first_run_id() const { return first_run_id_; }
 

@@ -14,12 +14,12 @@ class JobStore {
   /// All changes or none, in order; durable when it returns. Called by one thread.
   virtual absl::Status apply(const std::vector<Change>& changes) = 0;
   virtual absl::StatusOr<StoredState> load() = 0;
-  /// What workers logged of the tasks with id % modulus == remainder: the latest `most` attempts, oldest
-  /// first.
+  /// What workers logged of the tasks with id % modulus == remainder: the latest attempts whose texts have
+  /// no more than `most_bytes` together, oldest first.
   virtual absl::StatusOr<std::vector<PutLog>> logs(const JobId& job, uint64_t modulus, uint64_t remainder,
-                                                   size_t most) = 0;
-  /// Nothing waits: time for work that would hold up an apply(). Called by the same thread, at least once a
-  /// second while nothing happens. Aborted: the store belongs to another server now.
+                                                   size_t most_bytes) = 0;
+  /// Work that would hold up an apply(): called by the same thread about once a second, when all replies are
+  /// out. Aborted: the store belongs to another server now.
   virtual absl::Status rest() { return absl::OkStatus(); }
 };
 

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <filesystem>
 #include <map>
 #include <thread>
 
@@ -165,6 +166,11 @@ absl::Status serve(Options options) {
                    store == nullptr ? StoreFolder::open(options.store) : take_over_folder(options.store));
   if (store == nullptr) {
     ASSIGN_OR_RETURN(store, open_sqlite_store(folder.database(), durability));
+  } else if (std::filesystem::exists(folder.database())) {
+    // Its jobs would be out of sight, and retention would take their blobs.
+    return invalid_input("--database: {} was used without it and has jobs of its own in {}: give another --store, "
+                         "or delete that file together with its jobs",
+                         options.store, folder.database());
   }
   ASSIGN_OR_RETURN(BlobFolder blobs, BlobFolder::open(folder.blobs(), durability));
   Coordinator coordinator(std::move(store), std::move(blobs), options.scheduler, now);

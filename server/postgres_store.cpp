@@ -167,12 +167,14 @@ class PostgresStore final : public JobStore {
   }
 
   absl::StatusOr<std::vector<PutLog>> logs(const JobId& job, uint64_t modulus, uint64_t remainder,
-                                           size_t most) override {
+                                           size_t most_bytes) override {
     ASSIGN_OR_RETURN(
         const PgRows rows,
-        db_.query("SELECT task, epoch, worker, time, log FROM logs WHERE job = $1 AND task % $2::bigint = "
-                  "$3::bigint ORDER BY time DESC LIMIT $4::bigint",
-                  PgParameters().bytes(job).number(modulus).number(remainder).number(most)));
+        db_.query(
+            "SELECT task, epoch, worker, time, log FROM (SELECT *, SUM(length(log)) OVER (ORDER BY time "
+            "DESC, task, epoch) AS bytes FROM logs WHERE job = $1 AND task % $2::bigint = $3::bigint) AS "
+            "latest WHERE bytes <= $4::bigint ORDER BY time DESC, task, epoch",
+            PgParameters().bytes(job).number(modulus).number(remainder).number(most_bytes)));
     std::vector<PutLog> found;
     for (int i = rows.count(); i-- > 0;)
       found.push_back({{job, rows.number(i, 0), rows.number(i, 1)},

@@ -78,8 +78,8 @@ absl::StatusOr<T> flat(absl::StatusOr<absl::StatusOr<T>> nested) {
   return *std::move(nested);
 }
 
-// Of what workers logged: attempts that are read, and bytes that are sent, well below kMostMessageBytes.
-constexpr size_t kMostWorkerLogs = 10'000, kMostLogBytes = 8 << 20;
+// Of what workers logged: bytes that are read and sent, well below kMostMessageBytes.
+constexpr size_t kMostLogBytes = 8 << 20;
 
 /// A worker's text comes when its task has come to an end: its lines stand before what became of it.
 void add_worker_lines(const std::vector<PutLog>& logs, std::vector<LogLine>& lines) {
@@ -224,6 +224,7 @@ grpc::Status RenderService::Log(grpc::ServerContext*, const v1::LogRequest* requ
       flat(coordinator_.call([&](Scheduler& scheduler, const Now&) -> absl::StatusOr<std::vector<LogLine>> {
         const JobRecord* job = scheduler.find(request->job());
         if (job == nullptr) return no_job(request->job());
+        if (tile) RETURN_IF_ERROR(job->check_tile(*tile));
         std::vector<LogLine> kept(job->log.begin(), job->log.end());
         if (tile)
           std::erase_if(kept, [&](const LogLine& l) { return !l.task || job->tile_of(*l.task) != *tile; });
@@ -231,7 +232,7 @@ grpc::Status RenderService::Log(grpc::ServerContext*, const v1::LogRequest* requ
       }));
   if (!lines.ok()) return to_grpc(lines.status());
   if (request->worker_lines()) {
-    const auto logs = coordinator_.worker_logs(request->job(), tile, kMostWorkerLogs);
+    const auto logs = coordinator_.worker_logs(request->job(), tile, kMostLogBytes);
     if (!logs.ok()) return to_grpc(logs.status());
     add_worker_lines(*logs, *lines);
   }

@@ -3,10 +3,31 @@
 #include <algorithm>
 #include <set>
 
+#include "proto/blocks.h"
 #include "proto/status.h"
 
 namespace penumbra {
 namespace {
+
+/// Whether the blocks of a mix's pixels have had the passes that the task gives each.
+absl::Status check_blocks(const TileTask& task, size_t mix, const ResultShape& shape) {
+  const auto found = std::find_if(task.chosen.begin(), task.chosen.end(),
+                                  [mix](const ChosenMix& c) { return c.mix == static_cast<int>(mix); });
+  const std::vector<uint8_t> alike;
+  const std::vector<uint8_t>& shares = found != task.chosen.end() ? found->shares : alike;
+  const std::vector<int32_t> whole;
+  const std::vector<int32_t>& done = shape.block_passes.empty() ? whole : shape.block_passes[mix];
+  if (shares.empty() && done.empty()) return absl::OkStatus();
+  const PassRange& range = task.passes[mix];
+  for (size_t b = 0; b < block_count(task.tile); ++b) {
+    const int64_t asked = shares.empty() ? range.count()
+                                         : passes_of_block(range.end, shares[b], found->group) -
+                                               passes_of_block(range.begin, shares[b], found->group);
+    const int64_t had = done.empty() ? range.count() : done[b];
+    if (had != asked) return invalid_input("{} passes of block {} of mix {}, not {}", had, b, mix, asked);
+  }
+  return absl::OkStatus();
+}
 
 /// Whether the result is what the task asked for.
 absl::Status check_result(const TileTask& task, const CompletedTask& done,
@@ -21,6 +42,7 @@ absl::Status check_result(const TileTask& task, const CompletedTask& done,
   for (size_t m = 0; m < task.passes.size(); ++m)
     if (shape->passes[m] != task.passes[m].count())
       return invalid_input("{} passes of mix {}, not {}", shape->passes[m], m, task.passes[m].count());
+  for (size_t m = 0; m < task.passes.size(); ++m) RETURN_IF_ERROR(check_blocks(task, m, *shape));
   return absl::OkStatus();
 }
 

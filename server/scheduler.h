@@ -47,6 +47,8 @@ struct SchedulerLimits {
 struct ResultShape {
   PixelRect rect;
   std::vector<int64_t> passes;  ///< per mix
+  /// Per mix: of each block of pixels (proto/blocks.h); empty, or none of a mix: the mix's passes everywhere.
+  std::vector<std::vector<int32_t>> block_passes = {};
 };
 
 /// What an operator may want to read of.

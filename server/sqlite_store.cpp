@@ -38,6 +38,8 @@ constexpr const char* kMigrations[] = {
   CREATE TABLE logs (job TEXT NOT NULL, task INTEGER NOT NULL, epoch INTEGER NOT NULL, worker TEXT NOT NULL,
     time INTEGER NOT NULL, log TEXT NOT NULL, PRIMARY KEY (job, task, epoch)) WITHOUT ROWID;
 )sql",
+    // The latest are read without sorting all of them.
+    "CREATE INDEX logs_by_time ON logs(job, time);",
 };
 constexpr uint64_t kSchema = std::size(kMigrations);
 
@@ -96,17 +98,19 @@ class SqliteStore final : public JobStore {
   }
 
   absl::StatusOr<std::vector<PutLog>> logs(const JobId& job, uint64_t modulus, uint64_t remainder,
-                                           size_t most) override {
+                                           size_t most_bytes) override {
     ASSIGN_OR_RETURN(
         Statement row,
         Statement::prepare(db_.get(),
                            "SELECT task, epoch, worker, time, log FROM logs WHERE job = ? AND task % ? "
-                           "= ? ORDER BY time DESC LIMIT ?"));
-    row.bind(job).bind(modulus).bind(remainder).bind(most);
+                           "= ? ORDER BY time DESC"));
+    row.bind(job).bind(modulus).bind(remainder);
     std::vector<PutLog> found;
-    for (;;) {
+    for (size_t bytes = 0;;) {
       ASSIGN_OR_RETURN(const bool more, row.step());
       if (!more) break;
+      bytes += row.text(4).size();
+      if (bytes > most_bytes) break;
       found.push_back({{job, row.number(0), row.number(1)},
                        row.text(2),
                        1e-6 * static_cast<double>(row.number(3)),

@@ -50,7 +50,7 @@ absl::StatusOr<CachedScene> SceneCache::load(const JobSpec& job, const std::func
   const BundleFiles files(std::move(index), folder_.root());
   CachedScene out;
   try {
-    ASSIGN_OR_RETURN(out.scene, loader_.load(main, files, {threads_, job.strict}, out.report));
+    ASSIGN_OR_RETURN(out.scene, loader_.load(main, files, {threads_, job.strict, job.leave_out}, out.report));
   } catch (const std::bad_alloc&) {
     return absl::ResourceExhaustedError("out of memory while the scene was loaded (see --max-memory)");
   }
@@ -60,7 +60,7 @@ absl::StatusOr<CachedScene> SceneCache::load(const JobSpec& job, const std::func
 absl::StatusOr<CachedScene> SceneCache::get(const JobSpec& job, const std::function<bool()>& give_up) {
   std::unique_lock lock(mutex_);
   const auto same = [&](const std::shared_ptr<Entry>& entry) {
-    return entry->bundle == job.bundle && entry->strict == job.strict;
+    return entry->bundle == job.bundle && entry->strict == job.strict && entry->leave_out == job.leave_out;
   };
   if (const auto it = std::find_if(entries_.begin(), entries_.end(), same); it != entries_.end()) {
     const std::shared_ptr<Entry> entry = *it;
@@ -68,7 +68,7 @@ absl::StatusOr<CachedScene> SceneCache::get(const JobSpec& job, const std::funct
     loaded_.wait(lock, [&] { return !entry->loading; });
     return entry->result;
   }
-  entries_.push_front(std::make_shared<Entry>(Entry{job.bundle, job.strict}));
+  entries_.push_front(std::make_shared<Entry>(Entry{job.bundle, job.strict, job.leave_out}));
   const std::shared_ptr<Entry> mine = entries_.front();
   lock.unlock();
   absl::StatusOr<CachedScene> result = load(job, give_up);

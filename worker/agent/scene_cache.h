@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "proto/blob_folder.h"
 #include "worker/agent/blob_client.h"
@@ -34,6 +35,7 @@ class SceneCache {
   struct Entry {
     Digest bundle;
     bool strict;
+    std::vector<std::string> leave_out;
     bool loading = true;
     absl::StatusOr<CachedScene> result = absl::UnknownError("loading");
   };

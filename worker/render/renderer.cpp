@@ -7,6 +7,7 @@
 #include <set>
 
 #include "proto/status.h"
+#include "scenes/leave_out.h"
 #include "scenes/needs.h"
 #include "scenes/parser.h"
 #include "worker/render/render_space.h"
@@ -38,7 +39,8 @@ void SceneDeleter::operator()(Scene* scene) const { delete scene; }
 absl::StatusOr<ScenePtr> load_scene(const std::string& main_name, const SceneFiles& files,
                                     const LoadOptions& options, LoadReport& report) {
   const auto start = std::chrono::steady_clock::now();
-  ASSIGN_OR_RETURN(const SceneDescription description, parse_scene(main_name, files));
+  ASSIGN_OR_RETURN(SceneDescription description, parse_scene(main_name, files));
+  for (const std::string& effect : options.leave_out) RETURN_IF_ERROR(leave_out(effect, description));
   report.parse_seconds = seconds_since(start);
   return build_scene(description, files, options, report);
 }

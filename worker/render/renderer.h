@@ -22,6 +22,7 @@ using ScenePtr = std::unique_ptr<Scene, SceneDeleter>;
 struct LoadOptions {
   int threads = 1;
   bool strict = false;
+  std::vector<std::string> leave_out = {};  ///< effects of the scene that are not to be rendered
 };
 
 /// Parses and builds. InvalidArgument (`file:line:column: …`) is the scene's fault.

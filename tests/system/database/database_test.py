@@ -130,6 +130,15 @@ class Leaders(unittest.TestCase):
         standby.terminate()
         self.assertEqual(standby.wait(5), 0)
 
+    def test_a_store_with_jobs_of_its_own_is_refused(self):
+        alone = self.spawn(SERVER, "--listen", self.address, "--store", self.folder / "store")
+        self.says(alone, "listening")
+        alone.terminate()
+        alone.wait(10)
+        process = self.server()
+        self.assertEqual(process.wait(30), 2)
+        self.assertRegex(process.log.read_text(), "--database: .* was used without it")
+
     def test_refusals_name_the_flag(self):
         for url, text in (("postgresql:///none?host=/nowhere", "--database: "),):
             process = self.spawn(SERVER, "--listen", self.address, "--store", self.folder / "store", "--database", url)

@@ -104,7 +104,8 @@ class Logs(unittest.TestCase):
             x, y = 32 * (tile % 3), 32 * (tile // 3)
             self.assertIn(f"rendered [{x},{x + 32})x[{y},{y + 32})", of_tile)
             self.assertEqual(len(re.findall(r"rendered \[", of_tile)) * TILES, len(tasks))
-        self.assertIn("--tile: 6 is not below 6", self.penumbra("logs", job, "--tile", TILES, code=2))
+        for command in ("log", "logs"):
+            self.assertIn("--tile: 6 is not below 6", self.penumbra(command, job, "--tile", TILES, code=2))
         self.penumbra("logs", "none", code=2)
         # They outlive the server.
         server.kill()

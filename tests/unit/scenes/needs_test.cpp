@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "scenes/check.h"
+#include "scenes/leave_out.h"
 #include "tests/unit/scenes/scene_folder.h"
 
 namespace penumbra {
@@ -55,6 +56,32 @@ TEST(Needs, MaterialsCountWhereTheyAreWorn) {
               ElementsAre("specular"));
 }
 
+TEST(LeaveOut, TakesOneEffectAwayAndNoOther) {
+  const std::string_view text =
+      "ActiveTransform EndTime Translate 0 0 1 ActiveTransform All MediumInterface \"\" \"a\" "
+      "Camera \"perspective\" \"float lensradius\" 0.1 WorldBegin LightSource \"infinite\" "
+      "Texture \"t\" \"spectrum\" \"constant\" Shape \"curve\" Material \"matte\" \"texture Kd\" \"t\" "
+      "\"string "
+      "normalmap\" \"n\" Shape \"sphere\" \"float alpha\" 0 Material \"mirror\" ObjectBegin \"o\" "
+      "MediumInterface \"b\" \"\" Shape \"curve\" Shape \"sphere\" ObjectEnd ObjectInstance \"o\"";
+  const auto names = [](const SceneDescription& scene) {
+    std::vector<std::string> out;
+    for (const Need& need : needs_of(scene)) out.push_back(need.effect);
+    return out;
+  };
+  const std::vector<std::string> all = names(parsed(text));
+  EXPECT_EQ(all.size(), 9u) << "the text calls for every effect that there is";
+  for (const std::string& effect : all) {
+    SceneDescription scene = parsed(text);
+    ASSERT_TRUE(leave_out(effect, scene).ok()) << effect;
+    std::vector<std::string> rest = all;
+    std::erase(rest, effect);
+    EXPECT_EQ(names(scene), rest) << "without " << effect;
+  }
+  SceneDescription scene = parsed(text);
+  EXPECT_TRUE(absl::IsInvalidArgument(leave_out("lenses", scene)));
+}
+
 TEST(Needs, RoughGlassIsNotSpecular) {
   EXPECT_THAT(effects("WorldBegin Material \"glass\" Shape \"sphere\""), ElementsAre("specular"));
   EXPECT_THAT(
@@ -99,7 +126,8 @@ std::string checked(std::string_view shape) {
 
 TEST(CheckFiles, ATextWithoutAWorldIsNoPicture) {
   SceneFolder folder;
-  for (const char* text : {"", "Camera \"perspective\"\n", "MakeNamedMaterial \"m\" \"string type\" \"matte\"\n"}) {
+  for (const char* text :
+       {"", "Camera \"perspective\"\n", "MakeNamedMaterial \"m\" \"string type\" \"matte\"\n"}) {
     const auto scene = folder.parse(text);
     ASSERT_TRUE(scene.ok());
     EXPECT_THAT(message_of(check_files(*scene, folder.files())), HasSubstr("no WorldBegin"));

@@ -92,21 +92,22 @@ TEST_F(SqliteStoreTest, LogsAreKeptByTileUntilTheirJobGoes) {
   ASSERT_TRUE(
       open()->apply({PutJob{header()}, log(0, 1, 10.5), log(1, 1, 11), log(3, 1, 12), log(0, 2, 13)}).ok());
   const auto store = open();
-  const auto texts = [&](uint64_t modulus, uint64_t remainder, size_t most) {
+  const auto texts = [&](uint64_t modulus, uint64_t remainder, size_t most_bytes) {
     std::vector<std::string> out;
-    for (const PutLog& kept : *store->logs("j1", modulus, remainder, most)) out.push_back(kept.text);
+    for (const PutLog& kept : *store->logs("j1", modulus, remainder, most_bytes)) out.push_back(kept.text);
     return out;
   };
   using Texts = std::vector<std::string>;
-  EXPECT_EQ(texts(1, 0, 9), (Texts{"task 0 epoch 1", "task 1 epoch 1", "task 3 epoch 1", "task 0 epoch 2"}));
-  EXPECT_EQ(texts(1, 0, 2), (Texts{"task 3 epoch 1", "task 0 epoch 2"})) << "the latest";
-  EXPECT_EQ(texts(3, 0, 9), (Texts{"task 0 epoch 1", "task 3 epoch 1", "task 0 epoch 2"})) << "of one tile";
-  const auto first = store->logs("j1", 3, 0, 9);
+  EXPECT_EQ(texts(1, 0, 99), (Texts{"task 0 epoch 1", "task 1 epoch 1", "task 3 epoch 1", "task 0 epoch 2"}));
+  EXPECT_EQ(texts(1, 0, 28), (Texts{"task 3 epoch 1", "task 0 epoch 2"})) << "the latest of 14 bytes each";
+  EXPECT_EQ(texts(1, 0, 27), Texts{"task 0 epoch 2"});
+  EXPECT_EQ(texts(3, 0, 99), (Texts{"task 0 epoch 1", "task 3 epoch 1", "task 0 epoch 2"})) << "of one tile";
+  const auto first = store->logs("j1", 3, 0, 99);
   EXPECT_EQ(first->front().worker, "h/n");
   EXPECT_EQ(first->front().unix_time, 10.5);
   EXPECT_EQ(first->front().lease, (LeaseId{"j1", 0, 1}));
   ASSERT_TRUE(store->apply({DropJob{"j1"}}).ok());
-  EXPECT_EQ(texts(1, 0, 9), Texts{});
+  EXPECT_EQ(texts(1, 0, 99), Texts{});
 }
 
 TEST_F(SqliteStoreTest, ABatchIsAllOrNothing) {
