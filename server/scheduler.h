@@ -47,6 +47,7 @@ struct SchedulerLimits {
 struct ResultShape {
   PixelRect rect;
   std::vector<int64_t> passes;  ///< per mix
+  std::vector<int> bins;        ///< per mix
 };
 
 /// What an operator may want to read of.

@@ -19,6 +19,7 @@ absl::StatusOr<ResultShape> shape_of(const BlobFolder& blobs, const CompletedTas
       return invalid_input("result {}: its mixes cover different tiles", task.result);
     shape.rect = mix.rect;
     shape.passes.push_back(mix.passes);
+    shape.bins.push_back(mix.bins);
   }
   return shape;
 }
