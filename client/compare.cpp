@@ -35,12 +35,32 @@ std::string figures_text(const std::string& name, const ErrorFigures& e) {
   return text + '\n';
 }
 
+/// Means over the bins of path length, where both files have the same: {"relmse","mse","each":[relMSE…]}, else null.
+absl::StatusOr<Json> bins_json(const CompareOptions& o) {
+  const absl::StatusOr<ExrBins> bins = read_exr_bins(o.image), references = read_exr_bins(o.reference);
+  if (!bins.ok() || !references.ok() || bins->transient != references->transient) return nullptr;
+  Json each = Json::array();
+  double relmse = 0, mse = 0;
+  const auto n = static_cast<double>(bins->images.size());
+  for (size_t b = 0; b < bins->images.size(); ++b) {
+    ASSIGN_OR_RETURN(const ErrorFigures figures, compare(bins->images[b], references->images[b]));
+    each.push_back(figures.relmse);
+    relmse += figures.relmse / n;
+    mse += figures.mse / n;
+  }
+  return Json{{"relmse", relmse}, {"mse", mse}, {"each", each}};
+}
+
 absl::StatusOr<std::string> compare_files(const CompareOptions& o) {
   ASSIGN_OR_RETURN(const FilmImage image, read_exr(o.image));
   ASSIGN_OR_RETURN(const FilmImage reference, read_exr(o.reference));
   ASSIGN_OR_RETURN(const ErrorFigures whole, compare(image, reference));
   Json json = figures_json(whole);
   std::string text = figures_text("image", whole);
+  ASSIGN_OR_RETURN(json["bins"], bins_json(o));
+  if (const Json& bins = json["bins"]; !bins.is_null())
+    text += fmt::format("{:12}  relMSE {:.6g}  MSE {:.6g} (means over {} bins)\n", "bins", bins["relmse"].get<double>(),
+                        bins["mse"].get<double>(), bins["each"].size());
   json["regions"] = Json::object();
   for (const std::string& word : o.regions) {
     ASSIGN_OR_RETURN(const Region region, parse_region("--region", word));

@@ -23,20 +23,26 @@ void scatter(const google::protobuf::RepeatedField<float>& from, const PixelRect
               to.begin() + static_cast<std::ptrdiff_t>(channels * image.index(rect.x0, y)));
 }
 
+/// Passes and costs are the picture's; its bins have the same.
+bool has_counts(const v1::FrameChunk& chunk) {
+  return chunk.final() && chunk.bin() == 0;
+}
+
 }  // namespace
 
 FrameAssembler::Growing FrameAssembler::begin(const v1::FrameChunk& chunk) const {
   Growing growing;
   growing.frame.mix = chunk.mix();
   growing.frame.checkpoint = chunk.checkpoint();
+  growing.frame.bin = chunk.bin();
   growing.frame.final = chunk.final();
   FilmImage& image = growing.frame.image;
   image.width = spec_.width;
   image.height = spec_.height;
   image.window = spec_.crop;
   image.rgb.resize(3 * image.pixels());
-  if (chunk.final()) {
-    image.variance.resize(3 * image.pixels());
+  if (chunk.final()) image.variance.resize(3 * image.pixels());
+  if (has_counts(chunk)) {
     image.samples.resize(image.pixels());
     image.cost.resize(image.pixels());
   }
@@ -46,23 +52,27 @@ FrameAssembler::Growing FrameAssembler::begin(const v1::FrameChunk& chunk) const
 absl::StatusOr<std::optional<ArrivedFrame>> FrameAssembler::add(const v1::FrameChunk& chunk) {
   if (chunk.mix() < 0 || chunk.mix() >= static_cast<int>(spec_.mixes.size()))
     return broken(chunk, "no such mix");
+  const int bins = spec_.transient ? spec_.transient->bins : 0;
+  if (chunk.bin() < 0 || chunk.bin() > bins || (chunk.bin() > 0 && !chunk.final()))
+    return broken(chunk, "no such bin");
   ASSIGN_OR_RETURN(const PixelRect rect, from_proto(chunk.rect()));
   if (rect.area() <= 0 || !contains(spec_.crop, rect)) return broken(chunk, "a rectangle outside the crop");
   const auto pixels = rect.area();
   if (chunk.mean_size() != 3 * pixels) return broken(chunk, "values that do not fill their rectangle");
-  if (chunk.final() &&
-      (chunk.variance_size() != 3 * pixels || chunk.samples_size() != pixels || chunk.cost_size() != pixels))
+  const bool counts = has_counts(chunk);
+  if ((chunk.final() && chunk.variance_size() != 3 * pixels) ||
+      (counts && (chunk.samples_size() != pixels || chunk.cost_size() != pixels)))
     return broken(chunk, "layers that do not fill their rectangle");
 
-  const std::pair key{chunk.mix(), chunk.checkpoint()};
+  const std::array key{chunk.mix(), chunk.checkpoint(), chunk.bin()};
   auto it = growing_.find(key);
   if (it == growing_.end()) it = growing_.emplace(key, begin(chunk)).first;
   Growing& growing = it->second;
   if (growing.frame.final != chunk.final()) return broken(chunk, "chunks of two frames under one name");
   FilmImage& image = growing.frame.image;
   scatter(chunk.mean(), rect, 3, image, image.rgb);
-  if (chunk.final()) {
-    scatter(chunk.variance(), rect, 3, image, image.variance);
+  if (chunk.final()) scatter(chunk.variance(), rect, 3, image, image.variance);
+  if (counts) {
     scatter(chunk.samples(), rect, 1, image, image.samples);
     scatter(chunk.cost(), rect, 1, image, image.cost);
   }

@@ -1,8 +1,8 @@
 #pragma once
 // Frames as they come over the wire, put together again.
+#include <array>
 #include <map>
 #include <optional>
-#include <utility>
 
 #include "absl/status/statusor.h"
 #include "film/film_image.h"
@@ -13,7 +13,8 @@ namespace penumbra {
 
 struct ArrivedFrame {
   int mix = 0, checkpoint = 0;
-  bool final = false;  ///< has variance, samples, cost
+  int bin = 0;         ///< 0: the picture, else the bin's number + 1
+  bool final = false;  ///< has variance, and a picture has samples and cost
   FilmImage image;
 };
 
@@ -34,7 +35,7 @@ class FrameAssembler {
   Growing begin(const v1::FrameChunk& chunk) const;
 
   JobSpec spec_;
-  std::map<std::pair<int, int>, Growing> growing_;  ///< by (mix, checkpoint)
+  std::map<std::array<int, 3>, Growing> growing_;  ///< by (mix, checkpoint, bin)
 };
 
 }  // namespace penumbra

@@ -51,6 +51,11 @@ absl::StatusOr<JobSpec> read(const Json& json) {
   if (spec.width < 1 || spec.height < 1 || spec.crop.area() <= 0 ||
       !contains({0, 0, spec.width, spec.height}, spec.crop))
     return invalid_input("spec: the crop does not lie in {}x{}", spec.width, spec.height);
+  // Absent where an earlier version wrote the file.
+  if (json.contains("transient") && !json["transient"].is_null()) {
+    const Json& t = json["transient"];
+    spec.transient = Transient{t.at("t0").get<double>(), t.at("t1").get<double>(), t.at("bins").get<int>()};
+  }
   if (spec.tile < 1) return invalid_input("spec: tile {}", spec.tile);
   // Absent where an earlier version wrote the file: it had no `auto`.
   if (json.contains("auto_plans")) {
@@ -81,6 +86,10 @@ Json to_json(const Budget& budget) {
                     budget);
 }
 
+Json to_json(const std::optional<Transient>& t) {
+  return t ? Json{{"t0", t->t0}, {"t1", t->t1}, {"bins", t->bins}} : Json(nullptr);
+}
+
 Json to_json(const JobSpec& spec) {
   Json mixes = Json::array(), regions = Json::object();
   for (const Mix& mix : spec.mixes) mixes.push_back(label(mix));
@@ -103,6 +112,7 @@ Json to_json(const JobSpec& spec) {
           {"earlier_plans", earlier_plans_json(spec.earlier_plans)},
           {"reference", spec.reference},
           {"regions", regions},
+          {"transient", to_json(spec.transient)},
           {"leave_out", spec.leave_out}};
 }
 

@@ -142,6 +142,11 @@ void add_job_options(CLI::App& app, JobOptions& o) {
   app.add_option("--camera-grid", o.camera_grid,
                  "Camera samples only at the centres of NxN cells a pixel, as some references are made")
       ->type_name("N");
+  app.add_option(
+         "--transient", o.transient,
+         "Also sort light by the length of its path from the camera (scene units) into BINS equal bins over "
+         "[T0,T1): further parts of each EXR, and a flip-book in the report")
+      ->type_name("T0,T1,BINS");
   app.add_option("--seed", o.seed, "Random seed (default 0)")->type_name("N");
   app.add_flag("--strict", o.strict, "Warnings about the scene are errors");
 }
@@ -173,6 +178,11 @@ absl::StatusOr<JobSpec> make_job(const JobOptions& o, const SceneDefaults& scene
   }
   if (!o.seed.empty()) {
     ASSIGN_OR_RETURN(job.seed, parse_seed("--seed", o.seed));
+  }
+  if (!o.transient.empty()) {
+    ASSIGN_OR_RETURN(job.transient, parse_transient("--transient", o.transient));
+    if (const std::string fault = fault_of_bins(job); !fault.empty())
+      return invalid_input("--transient: {}", fault);
   }
   if (!o.reference.empty()) job.reference = std::filesystem::absolute(o.reference).lexically_normal();
   return job;

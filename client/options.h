@@ -38,7 +38,7 @@ struct JobOptions {
   std::vector<std::string> mixes, regions;
   std::string budget, passes, target_error;
   std::string sampler, resolution, crop, max_depth, tile, camera_grid, seed;
-  std::string reference;
+  std::string reference, transient;
   bool strict = false;
 };
 void add_job_options(CLI::App& app, JobOptions& options);

@@ -56,10 +56,13 @@ absl::Status write_images(const fs::path& folder, const FetchedRun& fetched,
     record.label = names[m];
     record.image = file_stem(names[m]) + ".exr";
     const FilmImage& image = fetched.images[m];
-    if (image.rgb.empty()) return absl::DataLossError("the server sent no image of " + names[m]);
-    RETURN_IF_ERROR(
-        write_exr(folder / record.image, image,
-                  {names[m], fetched.summary.mixes[m].cpu_seconds, spec.scene, spec.seed, run.partial}));
+    const auto missing = [](const FilmImage& i) { return i.rgb.empty(); };
+    if (missing(image) || std::any_of(fetched.bins[m].begin(), fetched.bins[m].end(), missing))
+      return absl::DataLossError("the server did not send all images of " + names[m]);
+    RETURN_IF_ERROR(write_exr(
+        folder / record.image, image,
+        {names[m], fetched.summary.mixes[m].cpu_seconds, spec.scene, spec.seed, run.partial, spec.transient},
+        fetched.bins[m]));
     record.own_error = own_error(image);
     if (reference) measured.Update(measure(image, *reference, spec, record));
   }

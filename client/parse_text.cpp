@@ -114,6 +114,17 @@ absl::StatusOr<PixelRect> parse_rect(std::string_view flag, std::string_view tex
   return rect;
 }
 
+absl::StatusOr<Transient> parse_transient(std::string_view flag, std::string_view text) {
+  const size_t first = text.find(','), second = first == text.npos ? first : text.find(',', first + 1);
+  if (second != text.npos) {
+    const auto t0 = number<double>(text.substr(0, first));
+    const auto t1 = number<double>(text.substr(first + 1, second - first - 1));
+    const auto bins = number<int>(text.substr(second + 1));
+    if (t0 && t1 && bins) return Transient{*t0, *t1, *bins};
+  }
+  return invalid_input("{}: '{}' is not T0,T1,BINS", flag, text);
+}
+
 absl::StatusOr<Region> parse_region(std::string_view flag, std::string_view text) {
   const size_t equals = text.find('=');
   if (equals == std::string_view::npos || equals == 0)

@@ -34,6 +34,8 @@ absl::StatusOr<PixelPlace> parse_pixel(std::string_view flag, std::string_view t
 absl::StatusOr<PixelRect> parse_rect(std::string_view flag, std::string_view text);
 /// `NAME=X0,Y0,X1,Y1`.
 absl::StatusOr<Region> parse_region(std::string_view flag, std::string_view text);
+/// `T0,T1,BINS`: two finite numbers and a whole one; whether they make sense is fault_of_bins()'s to say.
+absl::StatusOr<Transient> parse_transient(std::string_view flag, std::string_view text);
 absl::StatusOr<SamplerKind> parse_sampler(std::string_view flag, std::string_view text);
 std::string_view name_of(SamplerKind kind);
 

@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 
 #include "client/commands.h"
@@ -30,22 +31,41 @@ std::string replay_folder(const ReplayOptions& o) {
   return folder.string() + "-replay";
 }
 
-/// Aborted if any bit of R G B differs in any image.
+int64_t different_pixels(const FilmImage& a, const FilmImage& b) {
+  int64_t different = 0;
+  for (size_t p = 0; p < a.pixels(); ++p)
+    different += std::memcmp(&a.rgb[3 * p], &b.rgb[3 * p], 3 * sizeof(float)) != 0;
+  return different;
+}
+
+/// The picture of a file, and the bins of path length behind it.
+absl::StatusOr<std::vector<FilmImage>> read_all(const fs::path& path, bool bins) {
+  ASSIGN_OR_RETURN(FilmImage image, read_exr(path));
+  std::vector<FilmImage> all(1, std::move(image));
+  if (!bins) return all;
+  ASSIGN_OR_RETURN(ExrBins more, read_exr_bins(path));
+  std::move(more.images.begin(), more.images.end(), std::back_inserter(all));
+  return all;
+}
+
+/// Aborted if any bit of R G B differs in any image, or in any bin of one.
 absl::Status verify(const Json& before, const fs::path& old_folder, const Json& after,
                     const fs::path& new_folder) {
+  const bool bins = !after["transient"].is_null();
   for (size_t m = 0; m < after["mixes"].size(); ++m) {
     const std::string label = after["mixes"][m]["mix"].get<std::string>();
-    ASSIGN_OR_RETURN(const FilmImage a,
-                     read_exr(old_folder / before["mixes"][m]["image"].get<std::string>()));
-    ASSIGN_OR_RETURN(const FilmImage b, read_exr(new_folder / after["mixes"][m]["image"].get<std::string>()));
-    if (a.width != b.width || a.height != b.height || a.window != b.window)
+    ASSIGN_OR_RETURN(const std::vector<FilmImage> a,
+                     read_all(old_folder / before["mixes"][m]["image"].get<std::string>(), bins));
+    ASSIGN_OR_RETURN(const std::vector<FilmImage> b,
+                     read_all(new_folder / after["mixes"][m]["image"].get<std::string>(), bins));
+    if (a.size() != b.size() || a[0].width != b[0].width || a[0].height != b[0].height ||
+        a[0].window != b[0].window)
       return make_status(absl::StatusCode::kAborted, "{}: the images have different sizes", label);
     int64_t different = 0;
-    for (size_t p = 0; p < a.pixels(); ++p)
-      different += std::memcmp(&a.rgb[3 * p], &b.rgb[3 * p], 3 * sizeof(float)) != 0;
+    for (size_t i = 0; i < a.size(); ++i) different += different_pixels(a[i], b[i]);
     if (different > 0)
       return make_status(absl::StatusCode::kAborted, "{}: {} of {} pixels differ", label, different,
-                         a.pixels());
+                         a[0].pixels() * a.size());
   }
   return absl::OkStatus();
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "client/flipbook.h"
 #include "client/report_image.h"
 #include "client/run_json.h"
 #include "film/exr.h"
@@ -61,6 +62,13 @@ absl::StatusOr<Json> report_data(const std::string& folder) {
       else
         notes.push_back(message_of(image.status()));
     }
+    std::vector<std::optional<ExrBins>> bins(run["mixes"].size());
+    if (run.contains("transient") && !run["transient"].is_null())
+      for (size_t m = 0; m < bins.size(); ++m)
+        if (absl::StatusOr<ExrBins> read = read_exr_bins(base / run["mixes"][m]["image"].get<std::string>()); read.ok())
+          bins[m] = *std::move(read);
+        else
+          notes.push_back(message_of(read.status()));
     Json reference;
     if (window && run.contains("reference") && run["reference"].is_string()) {
       const absl::StatusOr<FilmImage> image = read_part(run["reference"].get<std::string>(), window);
@@ -72,6 +80,7 @@ absl::StatusOr<Json> report_data(const std::string& folder) {
     return Json{{"run", std::move(run)},
                 {"images", std::move(images)},
                 {"reference", std::move(reference)},
+                {"flipbook", flipbook_json(bins)},
                 {"notes", std::move(notes)}};
   } catch (const Json::exception& fault) {
     return invalid_input("{}: {}", (base / "run.json").string(), fault.what());

@@ -106,6 +106,10 @@ Calibration total_calibration(const RunSummary& summary) {
 Json needs_json(const RunSummary& summary) {
   Json needs = Json::array();
   for (const Need& need : summary.load.needs) needs.push_back({{"effect", need.effect}, {"why", need.why}});
+  // Asked for by the job and not by the scene.
+  if (const auto& t = summary.spec.transient)
+    needs.push_back(
+        {{"effect", "transient"}, {"why", fmt::format("--transient {},{},{}", t->t0, t->t1, t->bins)}});
   return needs;
 }
 
@@ -162,6 +166,7 @@ Json run_json(const RunRecord& run) {
           {"partial", run.partial},
           {"reference", s.spec.reference.empty() ? Json(nullptr) : Json(s.spec.reference)},
           {"needs", needs_json(s)},
+          {"transient", to_json(s.spec.transient)},
           {"load", {{"parse_seconds", s.load.parse_seconds}, {"build_seconds", s.load.build_seconds}}},
           {"mixes", mixes},
           {"tiles", tiles_json(s)},

@@ -186,13 +186,21 @@ absl::StatusOr<FetchedRun> Server::fetch(const JobId& job, std::stop_token stop,
                         std::optional<FrameAssembler>& assembler) -> absl::Status {
     if (message.has_summary()) {
       ASSIGN_OR_RETURN(run.summary, from_proto(message.summary()));
-      run.images.assign(run.summary.spec.mixes.size(), {});
+      const JobSpec& spec = run.summary.spec;
+      run.images.assign(spec.mixes.size(), {});
+      run.bins.assign(spec.mixes.size(),
+                      std::vector<FilmImage>(spec.transient ? size_t(spec.transient->bins) : 0));
       assembler.emplace(run.summary.spec);
     } else if (message.has_frame() && assembler) {
       ASSIGN_OR_RETURN(std::optional<ArrivedFrame> frame, assembler->add(message.frame()));
       if (!frame) return absl::OkStatus();
+      const auto mix = static_cast<size_t>(frame->mix);
+      if (frame->bin > 0) {
+        run.bins[mix][static_cast<size_t>(frame->bin) - 1] = std::move(frame->image);
+        return absl::OkStatus();
+      }
       if (each) each(run.summary, frame->mix, frame->checkpoint, frame->image);
-      if (frame->final) run.images[static_cast<size_t>(frame->mix)] = std::move(frame->image);
+      if (frame->final) run.images[mix] = std::move(frame->image);
     } else if (message.has_end()) {
       run.scheduler_cpu_seconds = message.end().scheduler_cpu_seconds();
     }

@@ -19,7 +19,8 @@ namespace penumbra {
 struct FetchedRun {
   RunSummary summary;
   double scheduler_cpu_seconds = 0;
-  std::vector<FilmImage> images;  ///< one per mix, with all layers
+  std::vector<FilmImage> images;             ///< one per mix, with all layers
+  std::vector<std::vector<FilmImage>> bins;  ///< of each mix, of a job with Transient: mean and variance
 };
 
 /// Every call waits through a server that is down or restarting for about 10 s, then is Unavailable

@@ -1,13 +1,19 @@
 #include "film/exr.h"
 
 #include <ImfChannelList.h>
+#include <ImfDoubleAttribute.h>
 #include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
 #include <ImfInputFile.h>
+#include <ImfInputPart.h>
 #include <ImfIntAttribute.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
 #include <ImfStringAttribute.h>
 
 #include <algorithm>
@@ -61,6 +67,10 @@ void insert_three(Imf::FrameBuffer& buffer, const Names& names, const std::vecto
   for (size_t c = 0; c < 3; ++c) buffer.insert(names[c], slice(values.data() + c, window, 3));
 }
 
+std::string bin_name(int bin) {
+  return fmt::format("bin.{:03}", bin);
+}
+
 Imf::Header make_header(const FilmImage& image, const ExrHeader& from) {
   const PixelRect& w = image.window;
   const Imath::Box2i display({0, 0}, {image.width - 1, image.height - 1});
@@ -72,6 +82,20 @@ Imf::Header make_header(const FilmImage& image, const ExrHeader& from) {
   header.insert("penumbra:seed", Imf::StringAttribute(fmt::format("{}", from.seed)));
   header.insert("penumbra:version", Imf::StringAttribute(PENUMBRA_VERSION));
   if (from.partial) header.insert("penumbra:partial", Imf::IntAttribute(1));
+  if (const auto& t = from.transient)
+    header.insert("penumbra:transient", Imf::StringAttribute(fmt::format("{},{},{}", t->t0, t->t1, t->bins)));
+  return header;
+}
+
+/// The header of a part that holds one bin.
+Imf::Header make_bin_header(const FilmImage& image, const Transient& transient, int bin) {
+  const Imath::Box2i display({0, 0}, {image.width - 1, image.height - 1});
+  const PixelRect& w = image.window;
+  Imf::Header header(display, {{w.x0, w.y0}, {w.x1 - 1, w.y1 - 1}}, 1, {0, 0}, 1, Imf::INCREASING_Y,
+                     Imf::ZIP_COMPRESSION);
+  header.insert("penumbra:t0", Imf::DoubleAttribute(transient.edge(bin)));
+  header.insert("penumbra:t1", Imf::DoubleAttribute(transient.edge(bin + 1)));
+  header.setName(bin_name(bin));
   return header;
 }
 
@@ -137,9 +161,10 @@ absl::Status check_sampling(const Imf::Header& header) {
   return absl::OkStatus();
 }
 
-/// May throw what OpenEXR throws.
-absl::StatusOr<FilmImage> read_file(const std::string& path) {
-  Imf::InputFile file(path.c_str());
+/// A file's only or first part, or one of several (Imf::InputFile, Imf::InputPart). May throw what OpenEXR
+/// throws.
+template <class File>
+absl::StatusOr<FilmImage> read_part(File& file) {
   const Imf::Header& header = file.header();
   ASSIGN_OR_RETURN(FilmImage image, shape_of(header));
   RETURN_IF_ERROR(check_sampling(header));
@@ -174,29 +199,95 @@ absl::StatusOr<FilmImage> read_file(const std::string& path) {
 
 }  // namespace
 
-absl::Status write_exr(const std::string& path, const FilmImage& image, const ExrHeader& from) {
+namespace {
+
+void write_parts(MemoryStream& stream, const FilmImage& image, const ExrHeader& from,
+                 std::span<const FilmImage> bins) {
+  std::vector<Imf::Header> headers = {make_header(image, from)};
+  std::vector<Imf::FrameBuffer> buffers = {make_buffer(image, headers[0].dataWindow())};
+  if (!bins.empty()) headers[0].setName("picture");
+  for (size_t b = 0; b < bins.size(); ++b) {
+    headers.push_back(make_bin_header(bins[b], *from.transient, static_cast<int>(b)));
+    buffers.push_back(make_buffer(bins[b], headers.back().dataWindow()));
+  }
+  for (size_t p = 0; p < headers.size(); ++p) {
+    for (auto s = buffers[p].begin(); s != buffers[p].end(); ++s)
+      headers[p].channels().insert(s.name(), Imf::Channel(Imf::FLOAT));
+    if (headers.size() > 1) headers[p].setType(Imf::SCANLINEIMAGE);
+  }
+  if (bins.empty()) {
+    Imf::OutputFile file(stream, headers[0]);
+    file.setFrameBuffer(buffers[0]);
+    file.writePixels(image.window.height());
+    return;
+  }
+  Imf::MultiPartOutputFile file(stream, headers.data(), static_cast<int>(headers.size()));
+  for (size_t p = 0; p < headers.size(); ++p) {
+    Imf::OutputPart part(file, static_cast<int>(p));
+    part.setFrameBuffer(buffers[p]);
+    part.writePixels(image.window.height());
+  }
+}
+
+absl::Status check_exists(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error))
+    return make_status(absl::StatusCode::kNotFound, "{}: no such file", path);
+  return absl::OkStatus();
+}
+
+/// May throw what OpenEXR throws.
+absl::StatusOr<ExrBins> read_bins(const std::string& path) {
+  Imf::MultiPartInputFile file(path.c_str());
+  ExrBins out;
+  for (int p = 0; p < file.parts(); ++p) {
+    const Imf::Header& header = file.header(p);
+    const auto* t0 = header.findTypedAttribute<Imf::DoubleAttribute>("penumbra:t0");
+    const auto* t1 = header.findTypedAttribute<Imf::DoubleAttribute>("penumbra:t1");
+    if (t0 == nullptr || t1 == nullptr || !header.hasName() || !header.name().starts_with("bin.")) continue;
+    if (out.images.empty()) out.transient.t0 = t0->value();
+    out.transient.t1 = t1->value();
+    Imf::InputPart part(file, p);
+    ASSIGN_OR_RETURN(FilmImage image, read_part(part));
+    out.images.push_back(std::move(image));
+  }
+  if (out.images.empty()) return invalid_input("no bins of path length");
+  out.transient.bins = static_cast<int>(out.images.size());
+  return out;
+}
+
+}  // namespace
+
+absl::Status write_exr(const std::string& path, const FilmImage& image, const ExrHeader& from,
+                       std::span<const FilmImage> bins) {
   PENUMBRA_CHECK(image.rgb.size() == 3 * image.pixels());
+  PENUMBRA_CHECK(bins.empty() ||
+                 (from.transient && bins.size() == static_cast<size_t>(from.transient->bins)));
   MemoryStream stream;
   try {
-    Imf::Header header = make_header(image, from);
-    const Imf::FrameBuffer buffer = make_buffer(image, header.dataWindow());
-    for (auto s = buffer.begin(); s != buffer.end(); ++s)
-      header.channels().insert(s.name(), Imf::Channel(Imf::FLOAT));
-    Imf::OutputFile file(stream, header);
-    file.setFrameBuffer(buffer);
-    file.writePixels(image.window.height());
+    write_parts(stream, image, from, bins);
   } catch (const std::exception& fault) {
     return make_status(absl::StatusCode::kInternal, "{}: {}", path, fault.what());
   }
   return write_file_atomically(path, stream.bytes());
 }
 
-absl::StatusOr<FilmImage> read_exr(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::exists(path, error))
-    return make_status(absl::StatusCode::kNotFound, "{}: no such file", path);
+absl::StatusOr<ExrBins> read_exr_bins(const std::string& path) {
+  RETURN_IF_ERROR(check_exists(path));
   try {
-    absl::StatusOr<FilmImage> image = read_file(path);
+    absl::StatusOr<ExrBins> bins = read_bins(path);
+    if (!bins.ok()) return invalid_input("{}: {}", path, message_of(bins.status()));
+    return bins;
+  } catch (const std::exception& fault) {
+    return invalid_input("{}: not a readable EXR image: {}", path, fault.what());
+  }
+}
+
+absl::StatusOr<FilmImage> read_exr(const std::string& path) {
+  RETURN_IF_ERROR(check_exists(path));
+  try {
+    Imf::InputFile file(path.c_str());
+    absl::StatusOr<FilmImage> image = read_part(file);
     if (!image.ok()) return invalid_input("{}: {}", path, message_of(image.status()));
     return image;
   } catch (const std::exception& fault) {  // OpenEXR's messages repeat the path

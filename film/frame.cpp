@@ -22,7 +22,7 @@ void merge_pixel(Frame& frame, size_t pixel, const TileView& tile, size_t source
   }
   frame.passes[pixel] += passes;
   frame.groups[pixel] += groups;
-  frame.cost[pixel] += tile.cost[source];
+  if (!tile.cost.empty()) frame.cost[pixel] += tile.cost[source];  // bins have none
 }
 
 size_t checked_pixels(int width, int height, const PixelRect& crop) {

@@ -1,5 +1,6 @@
 #include "film/tile_pixels.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "film/bytes.h"
@@ -9,7 +10,7 @@ namespace penumbra {
 namespace {
 
 constexpr std::string_view kMagic = "PNTR";
-constexpr uint32_t kVersion = 2, kVersionWithoutBlocks = 1;
+constexpr uint32_t kVersion = 3, kVersionWithoutBins = 2, kVersionWithoutBlocks = 1;
 constexpr size_t kLeastMixBytes = 4 * sizeof(int32_t) + 2 * sizeof(int64_t);
 
 // By their bits, without a branch per value, so that the loop is vectorised: an exponent of all ones is an
@@ -56,7 +57,27 @@ std::string fault_of_blocks(const TileView& p) {
   return {};
 }
 
+std::string fault_of_bins(const TileView& p, size_t pixels) {
+  const size_t values = 3 * pixels * static_cast<size_t>(std::max(p.bins, 0));
+  if (p.bins < 0 || p.bin_mean.size() != values || p.bin_m2.size() != values)
+    return fmt::format("arrays of {}, {} values for {} bins of {} pixels", p.bin_mean.size(), p.bin_m2.size(),
+                       p.bins, pixels);
+  if (!finite(p.bin_mean)) return "a bin's mean is not finite";
+  if (!finite_and_not_negative(p.bin_m2)) return "a bin's m2 is negative or not finite";
+  return {};
+}
+
 }  // namespace
+
+TileView TileView::bin(int b) const {
+  const size_t values = 3 * static_cast<size_t>(rect.area()), first = static_cast<size_t>(b) * values;
+  TileView out = *this;
+  out.bins = 0;
+  out.cost = out.bin_mean = out.bin_m2 = {};
+  out.mean = passes > 0 ? bin_mean.subspan(first, values) : std::span<const float>();
+  out.m2 = passes > 0 ? bin_m2.subspan(first, values) : std::span<const float>();
+  return out;
+}
 
 std::string fault_of(const TileView& p) {
   if (std::string fault = fault_of_header(p); !fault.empty()) return fault;
@@ -69,7 +90,7 @@ std::string fault_of(const TileView& p) {
   if (!finite(p.mean)) return "a mean is not finite";
   if (!finite_and_not_negative(p.m2)) return "an m2 is negative or not finite";
   if (!finite_and_not_negative(p.cost)) return "a cost is negative or not finite";
-  return {};
+  return fault_of_bins(p, pixels);
 }
 
 std::string serialize(const TileResult& result) {
@@ -83,12 +104,15 @@ std::string serialize(const TileResult& result) {
     out.put(p.passes);
     out.put(p.groups);
     out.put(static_cast<uint32_t>(p.passes > 0 ? p.block_passes.size() : 0));
+    out.put(static_cast<uint32_t>(p.bins));
     if (p.passes == 0) continue;
     out.put(p.block_passes);
     out.put(p.block_groups);
     out.put(p.mean);
     out.put(p.m2);
     out.put(p.cost);
+    out.put(p.bin_mean);
+    out.put(p.bin_m2);
   }
   return out.take();
 }
@@ -105,23 +129,27 @@ absl::Status ReceivedTile::read() {
   uint32_t version = 0, mixes = 0;
   if (!in.expect(kMagic) || !in.get(version) || !in.get(mixes))
     return invalid_input("tile result: not a tile result");
-  if (version != kVersion && version != kVersionWithoutBlocks)
+  if (version != kVersion && version != kVersionWithoutBins && version != kVersionWithoutBlocks)
     return invalid_input("tile result: version {}, not {}", version, kVersion);
   if (mixes > in.left() / kLeastMixBytes)
     return invalid_input("tile result: {} mixes in {} bytes", mixes, in.left());
   mixes_.resize(mixes);
   for (uint32_t m = 0; m < mixes; ++m) {
     TileView& p = mixes_[m];
-    uint32_t blocks = 0;
+    uint32_t blocks = 0, bins = 0;
     if (!in.get(p.rect.x0) || !in.get(p.rect.y0) || !in.get(p.rect.x1) || !in.get(p.rect.y1) ||
-        !in.get(p.passes) || !in.get(p.groups) || (version != kVersionWithoutBlocks && !in.get(blocks)))
+        !in.get(p.passes) || !in.get(p.groups) || (version != kVersionWithoutBlocks && !in.get(blocks)) ||
+        (version == kVersion && !in.get(bins)))
       return invalid_input("tile result: mix {}: truncated", m);
     if (const std::string fault = fault_of_header(p); !fault.empty())
       return invalid_input("tile result: mix {}: {}", m, fault);
     // An area below 2^62; its tripling cannot overflow, and view() bounds it by the bytes that are left.
     const uint64_t pixels = p.passes > 0 ? static_cast<uint64_t>(p.rect.area()) : 0;
+    if (bins > uint32_t{kMostBins}) return invalid_input("tile result: mix {}: {} bins", m, bins);
+    p.bins = static_cast<int>(bins);
     if (!in.view(p.block_passes, blocks) || !in.view(p.block_groups, blocks) ||
-        !in.view(p.mean, 3 * pixels) || !in.view(p.m2, 3 * pixels) || !in.view(p.cost, pixels))
+        !in.view(p.mean, 3 * pixels) || !in.view(p.m2, 3 * pixels) || !in.view(p.cost, pixels) ||
+        !in.view(p.bin_mean, 3 * pixels * bins) || !in.view(p.bin_m2, 3 * pixels * bins))
       return invalid_input("tile result: mix {}: truncated", m);
     if (const std::string fault = fault_of(p); !fault.empty())
       return invalid_input("tile result: mix {}: {}", m, fault);

@@ -26,6 +26,9 @@ struct TilePixels {
   std::vector<float> mean;  ///< 3 per pixel
   std::vector<float> m2;    ///< 3 per pixel: sum of weight * (group mean - mean)^2
   std::vector<float> cost;  ///< CPU µs per pixel, summed over the passes; outside bit-identity
+  /// Of a job with Transient: mean and m2 of what arrived in each bin, one bin's pixels after the other's.
+  int bins = 0;
+  std::vector<float> bin_mean = {}, bin_m2 = {};  ///< 3 per pixel and bin
 };
 
 /// All mixes of one tile task.
@@ -44,7 +47,12 @@ struct TileView {
         block_groups(p.block_groups),
         mean(p.mean),
         m2(p.m2),
-        cost(p.cost) {}
+        cost(p.cost),
+        bins(p.bins),
+        bin_mean(p.bin_mean),
+        bin_m2(p.bin_m2) {}
+  /// What arrived in one bin, as pixels of its own, without cost.
+  TileView bin(int b) const;
   /// Passes and groups of a pixel of the rect.
   std::pair<int64_t, int64_t> counts_at(int x, int y) const {
     if (block_passes.empty()) return {passes, groups};
@@ -55,6 +63,8 @@ struct TileView {
   int64_t passes = 0, groups = 0;
   std::span<const int32_t> block_passes, block_groups;
   std::span<const float> mean, m2, cost;
+  int bins = 0;
+  std::span<const float> bin_mean, bin_m2;
 };
 
 /// Empty if the shapes agree and every value is finite (m2 and cost not negative), else what is wrong.
@@ -62,9 +72,9 @@ struct TileView {
 std::string fault_of(const TileView& pixels);
 
 /// Bytes of a result: `PNTR`, then little-endian: version u32, number of mixes u32; per mix x0 y0 x1 y1 i32,
-/// passes i64, groups i64, blocks u32 (their number, or 0); with passes > 0 the i32 arrays block_passes and
-/// block_groups and the float arrays mean, m2, cost, whose lengths follow from the rect. A result with a
-/// fault is a programmer's fault.
+/// passes i64, groups i64, blocks u32 (their number, or 0), bins u32; with passes > 0 the i32 arrays
+/// block_passes and block_groups and the float arrays mean, m2, cost, bin_mean, bin_m2, whose lengths follow
+/// from the rect and the bins. A result with a fault is a programmer's fault.
 std::string serialize(const TileResult& result);
 
 /// A result as it came: its bytes, and where in them each mix lies. Nothing is copied: a server sees

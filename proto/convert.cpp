@@ -98,6 +98,8 @@ static absl::Status check_spec(const JobSpec& spec) {
   RETURN_IF_ERROR(check_range("tile", spec.tile, 1, kMostTile));
   RETURN_IF_ERROR(check_range("max_depth", spec.max_depth, 1, kMostDepth));
   RETURN_IF_ERROR(check_range("camera_grid", spec.camera_grid, 0, kMostCameraGrid));
+  if (const std::string fault = fault_of_bins(spec); !fault.empty())
+    return invalid_input("transient: {}", fault);
   if (spec.crop.area() == 0 || spec.crop.x1 > spec.width || spec.crop.y1 > spec.height)
     return invalid_input("crop: empty, or not inside the image");
   if (!spec.plan.empty() && spec.plan.size() != spec.mixes.size())
@@ -185,6 +187,11 @@ v1::JobSpec to_proto(const JobSpec& spec) {
   }
   if (spec.probe) *out.mutable_probe() = to_proto(*spec.probe);
   for (const std::string& effect : spec.leave_out) out.add_leave_out(effect);
+  if (spec.transient) {
+    out.mutable_transient()->set_t0(spec.transient->t0);
+    out.mutable_transient()->set_t1(spec.transient->t1);
+    out.mutable_transient()->set_bins(spec.transient->bins);
+  }
   return out;
 }
 
@@ -225,6 +232,9 @@ absl::StatusOr<JobSpec> from_proto(const v1::JobSpec& message) {
     RETURN_IF_ERROR(check_text("leave_out", effect));
     spec.leave_out.push_back(effect);
   }
+  if (message.has_transient())
+    spec.transient =
+        Transient{message.transient().t0(), message.transient().t1(), message.transient().bins()};
   RETURN_IF_ERROR(check_spec(spec));
   return spec;
 }

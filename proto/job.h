@@ -1,6 +1,7 @@
 #pragma once
 // The domain's nouns that cross process borders. Pure data; the wire's messages are converted to these
 // in proto/convert.{h,cpp} and nowhere else.
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -100,6 +101,20 @@ struct EarlierPlan {
   bool operator==(const EarlierPlan&) const = default;
 };
 
+/// When light arrives (`--transient`): [t0,t1) of path length, in scene units (light at speed 1, from the
+/// camera's vertex to the light), in equal bins. What is longer or shorter is in the picture and in no bin.
+struct Transient {
+  double t0 = 0, t1 = 0;
+  int bins = 0;
+  bool operator==(const Transient&) const = default;
+  /// Where bin b begins, and bin b − 1 ends.
+  double edge(int b) const { return b == bins ? t1 : std::min(t0 + (t1 - t0) * b / bins, t1); }
+};
+constexpr int kMostBins = 1024;
+/// Bins × pixels × mixes: of a tile, which a thread holds while it renders it (72 bytes each), and of the
+/// picture, which the client holds until it is written (24 bytes each).
+constexpr int64_t kMostTileBins = int64_t{1} << 22, kMostPictureBins = int64_t{1} << 26;
+
 /// Everything that decides a job's pixels, given the bundle's bytes.
 struct JobSpec {
   std::string scene;  ///< absolute path on the client's machine, for people
@@ -126,8 +141,12 @@ struct JobSpec {
   std::optional<Probe> probe;
   /// Effects of the scene (scenes/needs.h) that are not rendered: what they cost is measured against that.
   std::vector<std::string> leave_out;
+  std::optional<Transient> transient;
   bool operator==(const JobSpec&) const = default;
 };
+
+/// Empty if the job's bins are finite, ascending and not too many, else what is wrong with them.
+std::string fault_of_bins(const JobSpec& spec);
 
 /// Passes [begin,end) of one mix.
 struct PassRange {

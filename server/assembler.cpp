@@ -1,6 +1,7 @@
 #include "server/assembler.h"
 
 #include <algorithm>
+#include <span>
 
 #include "film/frame.h"
 #include "proto/status.h"
@@ -11,9 +12,21 @@ namespace {
 // film/frame.h keeps two means of three doubles, two counts and a cost per pixel.
 constexpr uint64_t kBytesPerPixel = (3 + 3 + 1) * sizeof(double) + 2 * sizeof(int64_t);
 
-struct MixBatch {
-  int first, count;
+/// What becomes a frame of its own.
+struct Part {
+  int mix;
+  std::optional<int> bin;
 };
+using Batch = std::span<const Part>;
+
+std::vector<Part> parts_of(const Assembly& job) {
+  std::vector<Part> parts;
+  for (int m = 0; m < static_cast<int>(job.spec.mixes.size()); ++m) {
+    parts.push_back({m, std::nullopt});
+    for (int b = 0; b < job.bins; ++b) parts.push_back({m, b});
+  }
+  return parts;
+}
 
 bool whole_range(const Assembly& job, size_t range) {
   const auto begin = job.results.begin() + static_cast<ptrdiff_t>(range * job.tiles.size());
@@ -21,7 +34,7 @@ bool whole_range(const Assembly& job, size_t range) {
                       [](const Digest& digest) { return digest.empty(); });
 }
 
-absl::Status merge_range(const Assembly& job, const BlobFolder& blobs, size_t range, MixBatch batch,
+absl::Status merge_range(const Assembly& job, const BlobFolder& blobs, size_t range, Batch batch,
                          std::vector<Frame>& frames) {
   for (size_t t = 0; t < job.tiles.size(); ++t) {
     const Digest& digest = job.results[range * job.tiles.size() + t];
@@ -30,22 +43,28 @@ absl::Status merge_range(const Assembly& job, const BlobFolder& blobs, size_t ra
     ASSIGN_OR_RETURN(const ReceivedTile result, ReceivedTile::parse(std::move(bytes)));
     if (result.mixes().size() != job.spec.mixes.size())
       return make_status(absl::StatusCode::kDataLoss, "result {}: {} mixes", digest, result.mixes().size());
-    for (int i = 0; i < batch.count; ++i) merge(frames[i], result.mixes()[batch.first + i]);
+    for (size_t i = 0; i < batch.size(); ++i) {
+      const TileView& mix = result.mixes()[static_cast<size_t>(batch[i].mix)];
+      if (mix.bins < job.bins)
+        return make_status(absl::StatusCode::kDataLoss, "result {}: {} bins", digest, mix.bins);
+      merge(frames[i], batch[i].bin ? mix.bin(*batch[i].bin) : mix);
+    }
   }
   return absl::OkStatus();
 }
 
-absl::Status deliver_frames(const std::vector<Frame>& frames, MixBatch batch, int checkpoint, bool final,
+absl::Status deliver_frames(const std::vector<Frame>& frames, Batch batch, int checkpoint, bool final,
                             const DeliverFrame& deliver) {
-  for (int i = 0; i < batch.count; ++i)
-    RETURN_IF_ERROR(
-        deliver({batch.first + i, checkpoint, final, final ? resolve(frames[i]) : resolve_rgb(frames[i])}));
+  for (size_t i = 0; i < batch.size(); ++i)
+    if (final || !batch[i].bin)
+      RETURN_IF_ERROR(deliver({batch[i].mix, batch[i].bin, checkpoint, final,
+                               final ? resolve(frames[i]) : resolve_rgb(frames[i])}));
   return absl::OkStatus();
 }
 
-absl::Status assemble_batch(const Assembly& job, const BlobFolder& blobs, bool checkpoints, MixBatch batch,
+absl::Status assemble_batch(const Assembly& job, const BlobFolder& blobs, bool checkpoints, Batch batch,
                             const DeliverFrame& deliver) {
-  std::vector<Frame> frames(batch.count, Frame(job.spec.width, job.spec.height, job.spec.crop));
+  std::vector<Frame> frames(batch.size(), Frame(job.spec.width, job.spec.height, job.spec.crop));
   const size_t ranges = job.plan ? job.plan->boundaries.size() : 0;
   bool whole = true;
   int checkpoint = -1;
@@ -64,7 +83,8 @@ absl::Status assemble_batch(const Assembly& job, const BlobFolder& blobs, bool c
 }  // namespace
 
 Assembly assembly_of(const JobRecord& job) {
-  Assembly out{job.spec(), job.tiles(), job.plan(), job.first_run_id(), {}};
+  Assembly out{job.spec(), job.tiles(), job.plan(), job.first_run_id(), {}, 0};
+  if (out.spec.transient) out.bins = out.spec.transient->bins;
   for (uint64_t id = job.first_run_id(); id < job.results().size(); ++id)
     out.results.push_back(job.results()[id] ? job.results()[id]->result : Digest());
   return out;
@@ -72,11 +92,11 @@ Assembly assembly_of(const JobRecord& job) {
 
 absl::Status assemble(const Assembly& job, const BlobFolder& blobs, bool checkpoints, uint64_t memory,
                       const DeliverFrame& deliver) {
-  const uint64_t per_mix = static_cast<uint64_t>(job.spec.crop.area()) * kBytesPerPixel;
-  const auto mixes = static_cast<int>(job.spec.mixes.size());
-  const auto together = static_cast<int>(std::clamp<uint64_t>(memory / per_mix, 1, mixes));
-  for (int first = 0; first < mixes; first += together) {
-    const MixBatch batch{first, std::min(together, mixes - first)};
+  const uint64_t per_frame = static_cast<uint64_t>(job.spec.crop.area()) * kBytesPerPixel;
+  const std::vector<Part> parts = parts_of(job);
+  const auto together = static_cast<size_t>(std::clamp<uint64_t>(memory / per_frame, 1, parts.size()));
+  for (size_t first = 0; first < parts.size(); first += together) {
+    const Batch batch = Batch(parts).subspan(first, std::min(together, parts.size() - first));
     RETURN_IF_ERROR(assemble_batch(job, blobs, checkpoints, batch, deliver));
   }
   return absl::OkStatus();

@@ -39,11 +39,14 @@ absl::Status FrameStream::frame(const AssembledFrame& frame) {
     v1::FrameChunk& chunk = *message.mutable_frame();
     chunk.set_mix(frame.mix);
     chunk.set_checkpoint(frame.checkpoint);
+    if (frame.bin) chunk.set_bin(*frame.bin + 1);
     chunk.set_final(frame.final);
     *chunk.mutable_rect() = to_proto(PixelRect{window.x0, y0, window.x1, y1});
     copy_rows(frame.image.rgb, 3, window, y0, y1, *chunk.mutable_mean());
     if (frame.final) {
       copy_rows(frame.image.variance, 3, window, y0, y1, *chunk.mutable_variance());
+    }
+    if (frame.final && !frame.bin) {
       copy_rows(frame.image.samples, 1, window, y0, y1, *chunk.mutable_samples());
       copy_rows(frame.image.cost, 1, window, y0, y1, *chunk.mutable_cost());
     }

@@ -181,6 +181,7 @@ absl::Status Previews::renew(const JobId& job, Kept& kept) {
                      if (record == nullptr)
                        return make_status(absl::StatusCode::kNotFound, "no job {:.80}", job);
                      Taken out{mix_summaries(*record), assembly_of(*record), 0};
+                     out.assembly.bins = 0;  // a page shows pictures
                      for (const Digest& digest : out.assembly.results) out.results += !digest.empty();
                      return out;
                    }));

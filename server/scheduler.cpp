@@ -30,7 +30,7 @@ absl::Status check_blocks(const TileTask& task, size_t mix, const ResultShape& s
 }
 
 /// Whether the result is what the task asked for.
-absl::Status check_result(const TileTask& task, const CompletedTask& done,
+absl::Status check_result(const JobSpec& spec, const TileTask& task, const CompletedTask& done,
                           const absl::StatusOr<ResultShape>& shape) {
   if (done.costs.size() != costs_of(task))
     return invalid_input("{} costs, where the task has {}", done.costs.size(), costs_of(task));
@@ -43,6 +43,9 @@ absl::Status check_result(const TileTask& task, const CompletedTask& done,
     if (shape->passes[m] != task.passes[m].count())
       return invalid_input("{} passes of mix {}, not {}", shape->passes[m], m, task.passes[m].count());
   for (size_t m = 0; m < task.passes.size(); ++m) RETURN_IF_ERROR(check_blocks(task, m, *shape));
+  const int bins = spec.transient ? spec.transient->bins : 0;
+  if (std::any_of(shape->bins.begin(), shape->bins.end(), [bins](int n) { return n != bins; }))
+    return invalid_input("the result has not the job's {} bins", bins);
   return absl::OkStatus();
 }
 
@@ -254,7 +257,7 @@ void Scheduler::complete(WorkerRecord& worker, const CompletedTask& done,
   }
   JobRecord& job = *find_job(done.lease.job);
   const TileTask task = job.description(done.lease.task);
-  const absl::Status status = check_result(task, done, shape);
+  const absl::Status status = check_result(job.spec(), task, done, shape);
   if (absl::IsNotFound(status)) return;  // not acknowledged: it will be uploaded again
   if (!status.ok()) {
     end_lease(worker, job, done.lease.task);

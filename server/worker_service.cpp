@@ -20,6 +20,7 @@ absl::StatusOr<ResultShape> shape_of(const BlobFolder& blobs, const CompletedTas
     shape.rect = mix.rect;
     shape.passes.push_back(mix.passes);
     shape.block_passes.emplace_back(mix.block_passes.begin(), mix.block_passes.end());
+    shape.bins.push_back(mix.bins);
   }
   return shape;
 }

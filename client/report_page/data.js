@@ -1,4 +1,4 @@
-// The page's one datum: {run, images, reference, notes}, made by client/report_data.cpp from the run's folder.
+// The page's one datum: {run, images, reference, flipbook, notes}, made by client/report_data.cpp from the run's folder.
 const data = JSON.parse(document.getElementById("data").textContent);
 const run = data.run;
 

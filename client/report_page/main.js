@@ -10,6 +10,7 @@ function ratiosFromImages() {
 head();
 mixTable();
 errorChart();
+flipBook();
 regionTable();
 tiles();
 budget();

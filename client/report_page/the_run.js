@@ -33,6 +33,8 @@ function theRun() {
   const settings = facts([["sampler", spec.sampler || "–", "How the samples of a pixel are spread."],
     ["depth", String(spec.max_depth ?? "–"), "Vertices with direct light; more than 1 follows specular chains."],
     ["tile", spec.tile ? `${spec.tile} pixels` : "–", "Edge of a tile."], ["crop", (spec.crop || []).join(", "), "Pixels that were rendered, half-open."],
+    run.transient ? ["bins of path length", `${run.transient.bins} over ${significant(run.transient.t0, 6)} to ${significant(run.transient.t1, 6)}`,
+      "Light is sorted by the length of its path from the camera, in scene units."] : null,
     ["reference", run.reference || "none", "What relMSE is measured against."]]);
   const needs = (run.needs || []).length ? facts(run.needs.map((n) => [n.effect, n.why, "An effect that the scene calls for, and where."]))
     : el("p", { class: "note" }, "Nothing beyond surfaces and lights.");

@@ -61,6 +61,12 @@ Rendered render(const Scene& scene, const JobSpec& job, int64_t group) {
     }
     out.images.push_back(resolve(frame));
     out.costs.push_back(cost);
+    out.bins.emplace_back();
+    for (int b = 0; job.transient && b < job.transient->bins; ++b) {
+      Frame bin(job.width, job.height, job.crop);
+      for (const TaskOutcome& o : outcomes) merge(bin, TileView(o.pixels.mixes[m]).bin(b));
+      out.bins.back().push_back(resolve(bin));
+    }
   }
   return out;
 }

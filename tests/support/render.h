@@ -16,6 +16,7 @@ JobSpec job(int width, int height, const std::vector<std::string>& mixes, int64_
 struct Rendered {
   std::vector<FilmImage> images;  ///< one per mix
   std::vector<MixCost> costs;
+  std::vector<std::vector<FilmImage>> bins;  ///< of each mix, of a job with Transient
 };
 
 /// Renders all tiles on two threads; groups of `group` passes. Of a mix `auto`, each tile takes the next candidate.

@@ -91,14 +91,14 @@ double relative_measure_of(const ApexMeasure& m, double lo, double hi) {
 }
 
 /// The point of [lo,hi] at fraction v of its measure.
-double sample_within(const LengthMeasure&, double lo, double hi, double v) {
+double sample_within_measure(const LengthMeasure&, double lo, double hi, double v) {
   return lo + v * (hi - lo);
 }
-double sample_within(const AngularMeasure& m, double lo, double hi, double v) {
+double sample_within_measure(const AngularMeasure& m, double lo, double hi, double v) {
   if (!(m.total > 0)) return lo + v * (hi - lo);
   return lo + sample_height(m.y0 + lo * m.length, (hi - lo) * m.length, m.d2, v) / m.length;
 }
-double sample_within(const ApexMeasure& m, double lo, double hi, double v) {
+double sample_within_measure(const ApexMeasure& m, double lo, double hi, double v) {
   if (!(m.total > 0)) return lo + v * (hi - lo);
   return sample_versine(m.t0, m.d, lo * m.length, hi * m.length, v) / m.length;
 }
@@ -130,16 +130,12 @@ double visible_measure(const LightLine& line, std::span<const Interval> visible)
   return sum;
 }
 
+double sample_within(const LightLine& line, double lo, double hi, double v) {
+  return std::visit([&](const auto& m) { return sample_within_measure(m, lo, hi, v); }, line.measure);
+}
+
 double sample_parameter(const LightLine& line, std::span<const Interval> visible, double measure, double v) {
-  double rest = v * measure;
-  for (size_t i = 0;; ++i) {
-    const double lo = visible[i].lo, hi = visible[i].hi, part = relative_measure(line, lo, hi);
-    if (rest < part || i + 1 == visible.size()) {
-      const double within = part > 0 ? std::min(rest / part, 1.0) : 0;
-      return std::visit([&](const auto& m) { return sample_within(m, lo, hi, within); }, line.measure);
-    }
-    rest -= part;
-  }
+  return sample_parts(line, visible, measure, v);
 }
 
 LightPoint sample_line(const LightLine& line, const Vec3d& x, std::span<const Interval> visible, double v) {

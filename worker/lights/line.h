@@ -1,6 +1,7 @@
 #pragma once
 // Lines on flat light shapes (design §5): a chord chosen with density p(u); a point on its visible part
 // chosen with the strategy's conditional density. Visibility is not known here: it comes in as intervals.
+#include <algorithm>
 #include <optional>
 #include <span>
 
@@ -64,6 +65,21 @@ double visible_measure(const LightLine& line, std::span<const Interval> visible)
 
 /// Parameter s at fraction v in [0,1) of the visible measure, whose sum is `measure` > 0.
 double sample_parameter(const LightLine& line, std::span<const Interval> visible, double measure, double v);
+
+/// The point of [lo,hi] at fraction v in [0,1] of its measure.
+double sample_within(const LightLine& line, double lo, double hi, double v);
+
+/// The same for the parts (with members lo and hi) of a line, whose measures sum to `measure` > 0.
+template <class Part>
+double sample_parts(const LightLine& line, std::span<const Part> parts, double measure, double v) {
+  double rest = v * measure;
+  for (size_t i = 0;; ++i) {
+    const double lo = parts[i].lo, hi = parts[i].hi, part = relative_measure(line, lo, hi);
+    if (rest < part || i + 1 == parts.size())
+      return sample_within(line, lo, hi, part > 0 ? std::min(rest / part, 1.0) : 0);
+    rest -= part;
+  }
+}
 
 /// Point at fraction v in [0,1) of the visible measure, and its density per solid angle at x.
 /// Nothing visible, or x behind the light: pdf 0.

@@ -31,16 +31,16 @@ LightSet far_lights(const Scene& scene) {
 }  // namespace
 
 MediumLines::Far::Far(const Scene& scene, const PreparedMix& prepared, MediumWalk* walk,
-                      QueryCounters& counters)
+                      QueryCounters& counters, Arrivals* arrivals)
     : lights(far_lights(scene)),
       mix(prepared.mix(), lights),
-      direct({*scene.geometry, lights, walk}, mix, counters) {}
+      direct({*scene.geometry, lights, walk, arrivals}, mix, counters) {}
 
 MediumLines::MediumLines(const Scene& scene, const PreparedMix& mix, MediumWalk* walk,
-                         QueryCounters& counters)
-    : scene_(scene), count_(mix.samples()), walk_(*walk), counters_(counters) {
+                         QueryCounters& counters, Arrivals* arrivals)
+    : scene_(scene), count_(mix.samples()), walk_(*walk), counters_(counters), arrivals_(arrivals) {
   for (size_t l = 0; l < scene.lights.size() && !far_; ++l)
-    if (is_far(scene.lights, l)) far_ = std::make_unique<Far>(scene, mix, walk, counters);
+    if (is_far(scene.lights, l)) far_ = std::make_unique<Far>(scene, mix, walk, counters, arrivals);
 }
 
 double MediumLines::end(const Vec3f& origin) const {
@@ -50,7 +50,8 @@ double MediumLines::end(const Vec3f& origin) const {
   return (Vec3d(lo) * 0.5 + Vec3d(hi) * 0.5 - Vec3d(origin)).length() + 2 * double(scene_.lights.reach());
 }
 
-Rgb MediumLines::estimate(const Ray& ray, double until, const PassSampler& sampler, int depth) {
+Rgb MediumLines::estimate(const Ray& ray, double until, const Start& start, const PassSampler& sampler,
+                          int depth) {
   const PassSampler numbers = sampler.branch(kLineBranch);
   const LightSet& lights = scene_.lights;
   const size_t parts = walk_.parts().size();
@@ -59,7 +60,7 @@ Rgb MediumLines::estimate(const Ray& ray, double until, const PassSampler& sampl
     Apex apex = choose(light, numbers.light(depth, uint32_t(lights.draws() ? 0 : light), 0, i, n));
     apex.weight *= weight;
     for (size_t part = 0; part < parts; ++part)
-      sum += along(apex, ray, part, until,
+      sum += along(apex, ray, start, part, until,
                    numbers.line(depth, uint32_t(lights.draws() ? 0 : light), int(part), i, n));
   };
   if (!lights.draws()) {
@@ -171,7 +172,8 @@ Rgb MediumLines::arriving(const Apex& apex, const Vec3f& x, Vec3f& wi, double& d
   return lights.area[apex.light].radiance * float(std::max(cosine, 0.0) / (distance * distance));
 }
 
-Rgb MediumLines::along(const Apex& apex, const Ray& ray, size_t part, double until, double u) {
+Rgb MediumLines::along(const Apex& apex, const Ray& ray, const Start& start, size_t part, double until,
+                       double u) {
   const MediumPart& in = walk_.parts()[part];
   double t0 = in.t0, t1 = std::min(in.t1, until);
   if (!(t0 < t1) || !clip_to_front(apex, ray, t0, t1)) return Rgb(0);
@@ -209,7 +211,12 @@ Rgb MediumLines::along(const Apex& apex, const Ray& ray, size_t part, double unt
   if (scene_.geometry->has_alpha() &&
       scene_.geometry->occluded_by_alpha(x, off_the_light(apex.p, apex.n, Vec3d(x)), counters_))
     return Rgb(0);
-  return f * float(apex.weight / density);
+  f *= float(apex.weight / density);
+  if (arrivals_ != nullptr) {
+    arrivals_->stand_at(start.length + t, start.throughput);
+    arrivals_->add(distance, f);
+  }
+  return f;
 }
 
 }  // namespace penumbra

@@ -15,12 +15,18 @@ namespace penumbra {
 
 class MediumLines {
  public:
+  /// For arrivals: the path's length at the ray's origin, and what counts of light from the ray.
+  struct Start {
+    double length;
+    Rgb throughput;
+  };
   /// Of each light and segment as many points as the mix has light samples.
-  MediumLines(const Scene& scene, const PreparedMix& mix, MediumWalk* walk, QueryCounters& counters);
+  MediumLines(const Scene& scene, const PreparedMix& mix, MediumWalk* walk, QueryCounters& counters,
+              Arrivals* arrivals);
 
   /// What lights at a finite distance make media scatter towards the ray's origin, on the parts of the walk's
   /// last pass() up to `until`. Leaves the walk standing anywhere.
-  Rgb estimate(const Ray& ray, double until, const PassSampler& sampler, int depth);
+  Rgb estimate(const Ray& ray, double until, const Start& start, const PassSampler& sampler, int depth);
   /// How far chords of a ray from there reach.
   double end(const Vec3f& origin) const;
   /// Lights infinitely far away, which have no point for a line to start from; null: there are none.
@@ -35,7 +41,7 @@ class MediumLines {
     double weight = 1;  ///< 1 / (number × density per area)
   };
   Apex choose(size_t light, const Vec2d& u) const;
-  Rgb along(const Apex& apex, const Ray& ray, size_t part, double until, double u);
+  Rgb along(const Apex& apex, const Ray& ray, const Start& start, size_t part, double until, double u);
   /// The part of [t0,t1] in front of the apex.
   static bool clip_to_front(const Apex& apex, const Ray& ray, double& t0, double& t1);
   void find_visible(const Apex& apex, const Ray& ray, double t0, double t1);
@@ -44,7 +50,8 @@ class MediumLines {
 
   /// The far lights as a set of their own.
   struct Far {
-    Far(const Scene& scene, const PreparedMix& mix, MediumWalk* walk, QueryCounters& counters);
+    Far(const Scene& scene, const PreparedMix& mix, MediumWalk* walk, QueryCounters& counters,
+        Arrivals* arrivals);
     LightSet lights;
     PreparedMix mix;
     DirectLight direct;
@@ -54,6 +61,7 @@ class MediumLines {
   int count_;
   MediumWalk& walk_;
   QueryCounters& counters_;
+  Arrivals* arrivals_;  ///< null: nobody asks when light arrives
   std::vector<IntervalSet> visible_;
   std::vector<Equiangular> angles_;  ///< of the visible intervals
   std::unique_ptr<Far> far_;         ///< `direct` refers to its neighbours: it must not move

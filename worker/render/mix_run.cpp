@@ -2,6 +2,8 @@
 
 #include <x86intrin.h>
 
+#include <cmath>
+
 #include "proto/blocks.h"
 #include "worker/render/thread_clock.h"
 
@@ -14,10 +16,14 @@ Rendered rendered(const JobSpec& job, const TileTask& task, size_t index) {
   return {job.mixes[index], task.group, kAllAlike};
 }
 
+static int bins_of(const JobSpec& job) {
+  return job.transient ? job.transient->bins : 0;
+}
+
 MixRun::MixRun(const Rendering& rendering, const TileTask& task, size_t index, const Rendered& what)
     : task_(task),
       sampler_(rendering, what.mix, index, what.group),
-      accumulator_(task.tile, what.group),
+      accumulator_(task.tile, what.group, bins_of(rendering.job)),
       group_(what.group),
       shares_(what.shares),
       next_(task.passes[index].begin),
@@ -66,11 +72,21 @@ void MixRun::sample(int x, int y, size_t pixel, int64_t pass) {
     ++cost_.non_finite;
     value = Rgb(0);
   }
+  if (sampler_.bins() != nullptr) sort_into_bins(pixel);
   accumulator_.add(pixel, value, __rdtsc() - start);
 }
 
+void MixRun::sort_into_bins(size_t pixel) {
+  sampler_.bins()->take([&](int bin, const Vec3d& value) {
+    if (std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z))
+      accumulator_.add_to_bin(pixel, bin, value);
+    else
+      ++cost_.non_finite;
+  });
+}
+
 void MixRun::forget() {
-  accumulator_ = TileAccumulator(task_.tile, group_);
+  accumulator_ = TileAccumulator(task_.tile, group_, accumulator_.bins());
   sampler_.counters() = {};
   cost_ = {};
 }

@@ -52,6 +52,7 @@ class MixRun {
   void share_out();
   void render();
   void sample(int x, int y, size_t pixel, int64_t pass);
+  void sort_into_bins(size_t pixel);
 
   const TileTask& task_;
   PixelSampler sampler_;

@@ -33,12 +33,18 @@ Ray first_ray(const CameraRay& ray) {
 Rgb PathTracer::radiance(const CameraRay& camera_ray, const PassSampler& sampler, bool emission) {
   Rgb sum(0), throughput(1);
   Ray ray = first_ray(camera_ray);
+  length_ = 0;
   if (walk_) walk_->start();
   for (int depth = 0;; ++depth) {
     const auto hit = scene_.geometry->intersect(ray, counters_);
+    if (arrivals_) throughput_ = throughput;
     if (walk_) sum += scattered(ray, hit ? double(hit->distance) : kInfinity, sampler, depth, throughput);
     if (!hit) return sum + throughput * background(ray.direction);
-    if (emission || depth > 0) sum += throughput * emitted(*hit, ray);
+    if (arrivals_) {
+      length_ += double(hit->distance);
+      arrivals_->stand_at(length_, throughput);
+    }
+    if (emission || depth > 0) sum += throughput * arrived(*hit, ray);
     const bool filters = scene_.footprints && depth == 0;
     const SurfacePoint surface = surface_at(scene_, *hit, ray.direction, filters ? &camera_ray : nullptr);
     const Bsdf bsdf = scene_.materials.shade(scene_.meshes[hit->id.mesh].material, surface, scene_.textures);
@@ -57,9 +63,13 @@ Rgb PathTracer::emission(const CameraRay& camera_ray) {
   const Ray ray = first_ray(camera_ray);
   const auto hit = scene_.geometry->intersect(ray, counters_);
   if (!hit) return Rgb(0);
-  if (!walk_) return emitted(*hit, ray);
-  walk_->start();
-  return emitted(*hit, ray) * walk_->pass(ray, double(hit->distance), nullptr, vertices_);
+  Rgb passes(1);
+  if (walk_) {
+    walk_->start();
+    passes = walk_->pass(ray, double(hit->distance), nullptr, vertices_);
+  }
+  if (arrivals_) arrivals_->stand_at(double(hit->distance), passes);
+  return arrived(*hit, ray) * passes;
 }
 
 Rgb PathTracer::scattered(const Ray& ray, double distance, const PassSampler& sampler, int depth,
@@ -96,7 +106,8 @@ Rgb PathTracer::scattered_by_lines(const Ray& ray, double distance, const PassSa
   far_vertices_.clear();
   if (lines_->far() != nullptr) walk_->pass(ray, distance, &before, far_vertices_);
   left = walk_->pass(ray, distance, until < distance ? &beyond : nullptr, vertices_);
-  Rgb sum = lines_->estimate(ray, until, sampler, depth) + lit(vertices_, ray, depth, direct_);
+  Rgb sum = lines_->estimate(ray, until, {length_, throughput_}, sampler, depth) +
+            lit(vertices_, ray, depth, direct_);
   if (lines_->far() != nullptr) sum += lit(far_vertices_, ray, depth, *lines_->far());
   return sum;
 }
@@ -107,6 +118,9 @@ Rgb PathTracer::lit(const std::vector<ScatterVertex>& vertices, const Ray& ray, 
   for (const ScatterVertex& vertex : vertices) {
     walk_->stand_in(vertex.medium);
     const ShadingPoint point(vertex.p, -ray.direction, *vertex.phase);
+    if (arrivals_)
+      arrivals_->stand_at(length_ + (Vec3d(vertex.p) - Vec3d(ray.origin)).length(),
+                          throughput_ * vertex.weight);
     sum += vertex.weight * direct.estimate(point, vertex.sampler, depth);
   }
   return sum;
@@ -116,6 +130,12 @@ Rgb PathTracer::emitted(const Hit& hit, const Ray& ray) {
   if (scene_.lights.area.empty()) return Rgb(0);
   const auto met = light_met(*scene_.geometry, scene_.lights, ray, hit, counters_);
   return met ? scene_.lights.area[met->emitter].radiance : Rgb(0);
+}
+
+Rgb PathTracer::arrived(const Hit& hit, const Ray& ray) {
+  const Rgb light = emitted(hit, ray);
+  if (arrivals_) arrivals_->add(0, light);
+  return light;
 }
 
 Rgb PathTracer::background(const Vec3f& direction) const {

@@ -10,13 +10,16 @@ namespace penumbra {
 class PathTracer {
  public:
   /// `max_depth`: vertices that get direct light; 1 follows no specular bounce.
-  PathTracer(const Scene& scene, const PreparedMix& mix, int max_depth, QueryCounters& counters)
+  /// `arrivals`: is told when everything arrives that radiance() and emission() return; null: nobody asks.
+  PathTracer(const Scene& scene, const PreparedMix& mix, int max_depth, QueryCounters& counters,
+             Arrivals* arrivals = nullptr)
       : scene_(scene),
+        arrivals_(arrivals),
         walk_(scene.effects.media ? scene.effects.media->walk() : nullptr),
-        direct_({*scene.geometry, scene.lights, walk_.get()}, mix, counters),
+        direct_({*scene.geometry, scene.lights, walk_.get(), arrivals}, mix, counters),
         max_depth_(max_depth),
         counters_(counters) {
-    if (walk_ && mix.lines_in_media()) lines_.emplace(scene, mix, walk_.get(), counters);
+    if (walk_ && mix.lines_in_media()) lines_.emplace(scene, mix, walk_.get(), counters, arrivals);
   }
 
   /// Everything that arrives along the ray; without `emission`, all but what an area light's surface that the
@@ -27,6 +30,8 @@ class PathTracer {
 
  private:
   Rgb emitted(const Hit& hit, const Ray& ray);
+  /// The same, told to arrivals as well, where the path stands.
+  Rgb arrived(const Hit& hit, const Ray& ray);
   /// What media scatter towards the ray's origin from before `distance`; takes from the throughput what does
   /// not pass them.
   Rgb scattered(const Ray& ray, double distance, const PassSampler& sampler, int depth, Rgb& throughput);
@@ -40,6 +45,10 @@ class PathTracer {
               Rgb& throughput) const;
 
   const Scene& scene_;
+  Arrivals* arrivals_;  ///< null: nobody asks when light arrives
+  /// For arrivals: where the path stands, and what counts of light there.
+  double length_ = 0;
+  Rgb throughput_{1};
   std::unique_ptr<MediumWalk> walk_;  ///< null: no media
   DirectLight direct_;
   int max_depth_;

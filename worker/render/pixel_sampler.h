@@ -1,8 +1,10 @@
 #pragma once
 // One camera sample of one pixel in one pass of one mix: what run, pilot and `auto`'s pilot have in common.
 #include <cmath>
+#include <memory>
 #include <vector>
 
+#include "worker/effects/transient.h"
 #include "worker/render/camera.h"
 #include "worker/render/camera_stage.h"
 #include "worker/render/light_pixels.h"
@@ -41,25 +43,30 @@ class PixelSampler {
         group_(group),
         stage_(rendering.job.probe ? nullptr : rendering.scene.effects.camera.get()),
         prepared_(mix, rendering.scene.lights),
-        tracer_(rendering.scene, prepared_, rendering.job.max_depth, counters_) {}
+        bins_(rendering.job.transient ? std::make_unique<TimeBins>(*rendering.job.transient) : nullptr),
+        tracer_(rendering.scene, prepared_, rendering.job.max_depth, counters_, bins_.get()) {}
   PixelSampler(const PixelSampler&) = delete;  // the tracer refers to its neighbours
 
   /// Radiance times the filter's weight at a pixel of the tile. May be NaN or infinite: whoever adds it up looks
   /// at that.
   Rgb sample(int x, int y, int64_t pass) {
+    if (bins_) bins_->clear();
     const JobSpec& job = rendering_.job;
     const PixelRect& tile = rendering_.tile;
     const uint32_t pixel = uint32_t(y) * uint32_t(job.width) + uint32_t(x);
     const PassSampler sampler(job.sampler, job.seed, index_, rendering_.kind, pixel, pass, group_);
     const FilterSample filter = filter_.sample(sampler.film());
     const Vec2d centre(x + 0.5, y + 0.5);
-    const bool apart = rendering_.light_pixels[size_t(y - tile.y0) * size_t(tile.width()) + size_t(x - tile.x0)] != 0;
-    Rgb value = radiance(ray(centre, filter), sampler, !apart) * float(filter.weight);
+    const bool apart =
+        rendering_.light_pixels[size_t(y - tile.y0) * size_t(tile.width()) + size_t(x - tile.x0)] != 0;
+    Rgb value = radiance(ray(centre, filter), sampler, !apart, filter.weight) * float(filter.weight);
     if (apart) value += emission(centre, sampler);
     return value;
   }
 
   QueryCounters& counters() { return counters_; }
+  /// Where the last sample's light went by the length of its path; null: nobody asks.
+  TimeBins* bins() { return bins_.get(); }
 
  private:
   CameraRay ray(const Vec2d& centre, const FilterSample& filter) const {
@@ -75,25 +82,33 @@ class PixelSampler {
     const int n = stage_ ? stage_->emission_samples(mix_, kEmissionRays) : kEmissionRays;
     for (int i = 0; i < n; ++i) {
       const FilterSample filter = filter_.sample(sampler.film(i, n));
-      sum += emission(ray(centre, filter), sampler, i, n) * float(filter.weight);
+      sum += emission(ray(centre, filter), sampler, i, n, filter.weight / n) * float(filter.weight);
     }
     return sum / float(n);
   }
 
-  Rgb radiance(const CameraRay& pinhole, const PassSampler& sampler, bool emission) {
+  /// `weight`: what the caller makes of it, for the bins.
+  Rgb radiance(const CameraRay& pinhole, const PassSampler& sampler, bool emission, double weight) {
+    if (bins_) bins_->weigh(weight);
     if (!stage_) return tracer_.radiance(pinhole, sampler, emission);
     stage_->rays(pinhole, {sampler, mix_, *rendering_.scene.geometry, counters_}, rays_);
     Rgb sum(0);
-    for (size_t k = 0; k < rays_.size(); ++k)
+    for (size_t k = 0; k < rays_.size(); ++k) {
+      if (bins_) bins_->weigh(weight * double(rays_[k].weight));
       sum += tracer_.radiance(rays_[k].ray, sampler.branch(int(k)), emission) * rays_[k].weight;
+    }
     return sum;
   }
 
-  Rgb emission(const CameraRay& pinhole, const PassSampler& sampler, int i, int n) {
+  Rgb emission(const CameraRay& pinhole, const PassSampler& sampler, int i, int n, double weight) {
+    if (bins_) bins_->weigh(weight);
     if (!stage_) return tracer_.emission(pinhole);
     stage_->rays(pinhole, {sampler, mix_, *rendering_.scene.geometry, counters_, i, n}, rays_);
     Rgb sum(0);
-    for (const WeightedRay& seen : rays_) sum += tracer_.emission(seen.ray) * seen.weight;
+    for (const WeightedRay& seen : rays_) {
+      if (bins_) bins_->weigh(weight * double(seen.weight));
+      sum += tracer_.emission(seen.ray) * seen.weight;
+    }
     return sum;
   }
 
@@ -106,6 +121,7 @@ class PixelSampler {
   std::vector<WeightedRay> rays_;
   PreparedMix prepared_;
   QueryCounters counters_;
+  std::unique_ptr<TimeBins> bins_;  ///< null: the job has no --transient
   PathTracer tracer_;
 };
 

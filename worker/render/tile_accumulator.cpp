@@ -10,8 +10,8 @@
 
 namespace penumbra {
 
-TileAccumulator::TileAccumulator(const PixelRect& rect, int64_t group)
-    : rect_(rect), group_(group), pixels_(size_t(rect.area())) {}
+TileAccumulator::TileAccumulator(const PixelRect& rect, int64_t group, int bins)
+    : rect_(rect), group_(group), pixels_(size_t(rect.area())), bins_(pixels_.size(), bins) {}
 
 void TileAccumulator::end_pass(int64_t pass, double cpu_seconds) {
   uint64_t ticks = 0;
@@ -34,6 +34,7 @@ void TileAccumulator::end_group() {
   for (Pixel& p : pixels_) {
     if (p.in_group == 0) continue;
     const double weight = double(p.in_group);
+    bins_.end_group(size_t(&p - pixels_.data()), weight, p.moments[0]);
     for (int c = 0; c < 3; ++c) {
       p.moments[c].add(p.sum[c] / weight, weight);
       p.sum[c] = 0;
@@ -58,6 +59,7 @@ TilePixels TileAccumulator::pixels() const {
     out.cost.push_back(float(p.cost));
   }
   add_block_counts(out);
+  bins_.put(out);
   return out;
 }
 

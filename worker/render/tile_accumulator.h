@@ -6,12 +6,14 @@
 #include "film/moments.h"
 #include "film/tile_pixels.h"
 #include "scenes/math.h"
+#include "worker/render/bin_accumulator.h"
 
 namespace penumbra {
 
 class TileAccumulator {
  public:
-  TileAccumulator(const PixelRect& rect, int64_t group);
+  /// `bins`: of path lengths beside the picture (JobSpec::transient).
+  TileAccumulator(const PixelRect& rect, int64_t group, int bins = 0);
 
   /// A pixel's value in the current pass, and what it cost in clock ticks. Blocks of pixels may sit out whole
   /// groups of passes (proto/blocks.h).
@@ -21,6 +23,9 @@ class TileAccumulator {
     p.ticks = ticks;
     ++p.in_group;
   }
+  /// What of it arrived in one bin; any number of times a pass, before add().
+  void add_to_bin(size_t pixel, int bin, const Vec3d& value) { bins_.add(pixel, bin, value); }
+  int bins() const { return bins_.count(); }
   /// Closes a pass: spreads its CPU seconds over the pixels by their ticks, ends the group if it is full.
   void end_pass(int64_t pass, double cpu_seconds);
   /// Closes a group that the range's end cut short.
@@ -56,6 +61,7 @@ class TileAccumulator {
   PixelRect rect_;
   int64_t group_, passes_ = 0;
   std::vector<Pixel> pixels_;
+  BinAccumulator bins_;
 };
 
 }  // namespace penumbra

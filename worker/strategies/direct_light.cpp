@@ -9,7 +9,6 @@
 namespace penumbra {
 namespace {
 
-constexpr size_t kNoLine = std::numeric_limits<size_t>::max();
 /// Streams of random numbers that belong to no single light.
 constexpr uint32_t kBsdfStream = 0xffffffff, kDrawStream = 0x80000000;
 
@@ -34,7 +33,7 @@ Rgb DirectLight::estimate(const ShadingPoint& point, const PassSampler& sampler,
     const LightView view = view_of(point, l);
     sum += ask({view, l, 1, kOnce, 1, uint32_t(l)}, sampler, depth);
   }
-  for (const DeltaEmitter& e : lights.delta) sum += delta(point, e);
+  for (const DeltaEmitter& e : lights.delta) sum += delta(point, e, 1);
   return sum;
 }
 
@@ -63,7 +62,7 @@ Rgb DirectLight::draw_lights(const ShadingPoint& point, const PassSampler& sampl
       const LightView view = view_of(point, first.light);
       sum += ask({view, first.light, draws, turns_, kDraws, kDrawStream}, sampler, depth);
     } else {
-      sum += delta(point, lights.delta[first.light - extended]) * float(double(turns_.size()) / draws);
+      sum += delta(point, lights.delta[first.light - extended], float(double(turns_.size()) / draws));
     }
   }
   while (!hits_.empty()) {
@@ -119,6 +118,12 @@ void DirectLight::trace_bsdf(const ShadingPoint& point, const PassSampler& sampl
 }
 
 Rgb DirectLight::ask(const Task& task, const PassSampler& sampler, int depth) {
+  const Rgb sum = answer(task, sampler, depth);
+  if (scene_.arrivals != nullptr) arrive(task, sampler, depth);
+  return sum;
+}
+
+Rgb DirectLight::answer(const Task& task, const PassSampler& sampler, int depth) {
   candidates_.clear();
   own_lines_.clear();
   integrated_ = Rgb(0);
@@ -383,16 +388,19 @@ DirectLight::Integrand DirectLight::integrand(const ShadingPoint& point, size_t 
   return out;
 }
 
-Rgb DirectLight::delta(const ShadingPoint& point, const DeltaEmitter& emitter) {
+Rgb DirectLight::delta(const ShadingPoint& point, const DeltaEmitter& emitter, float weight) {
   const DeltaLight light = delta_light_at(emitter, point.above, scene_.lights.reach());
   if (is_black(light.irradiance)) return Rgb(0);
-  const Rgb f = point.scatter(light.wi) * light.irradiance;
+  Rgb f = point.scatter(light.wi) * light.irradiance;
   if (is_black(f) || scene_.geometry.occluded(point.origin(light.wi), light.end, counters_)) return Rgb(0);
-  if (scene_.attenuation == nullptr) return f;
   const double distance = std::holds_alternative<DistantEmitter>(emitter)
                               ? std::numeric_limits<double>::infinity()
                               : double((light.end - point.above).length());
-  return f * scene_.attenuation->transmittance(point.origin(light.wi), light.wi, distance);
+  if (scene_.attenuation != nullptr)
+    f *= scene_.attenuation->transmittance(point.origin(light.wi), light.wi, distance);
+  f *= weight;
+  if (scene_.arrivals != nullptr) scene_.arrivals->add(distance, f);
+  return f;
 }
 
 }  // namespace penumbra

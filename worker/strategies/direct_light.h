@@ -1,10 +1,12 @@
 #pragma once
 // Direct light at a shading point: one loop over all strategies of a mix, whatever they are.
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "worker/geometry/geometry.h"
 #include "worker/sampling/sampler.h"
+#include "worker/strategies/arrivals.h"
 #include "worker/strategies/attenuation.h"
 #include "worker/strategies/combination.h"
 #include "worker/strategies/light_set.h"
@@ -21,6 +23,8 @@ struct Surroundings {
   const Geometry& geometry;
   const LightSet& lights;
   const Attenuation* attenuation = nullptr;  ///< null: nothing but surfaces is in the way of light
+  Arrivals* arrivals =
+      nullptr;  ///< also told of all light; the path stands at the point. Null: nobody asks when
 };
 
 /// Estimator of the direct light that a point scatters towards its viewer. Keeps scratch memory between
@@ -44,6 +48,7 @@ class DirectLight {
   Integrand integrand(const ShadingPoint& point, size_t area_emitter, const Vec3d& on_light);
 
  private:
+  static constexpr size_t kNoLine = std::numeric_limits<size_t>::max();
   /// What is known of the way to a candidate: a ray has gone it; no opaque surface is in it; nothing.
   enum class Sight { kTraced, kNoOpaque, kUnknown };
   /// A direction that some strategy found, on its way to its weight.
@@ -80,7 +85,13 @@ class DirectLight {
   Rgb draw_lights(const ShadingPoint& point, const PassSampler& sampler, int depth);
   LightView view_of(const ShadingPoint& point, size_t light) const;
   Rgb ask(const Task& task, const PassSampler& sampler, int depth);
-  Rgb delta(const ShadingPoint& point, const DeltaEmitter& emitter);
+  Rgb answer(const Task& task, const PassSampler& sampler, int depth);
+  // direct_light_arrivals.cpp
+  void arrive(const Task& task, const PassSampler& sampler, int depth);
+  void arrive(const Task& task, size_t candidate);
+  void spread(const Task& task, size_t slot, size_t line, double v);
+  /// `weight`: what its being drawn among many counts for.
+  Rgb delta(const ShadingPoint& point, const DeltaEmitter& emitter, float weight);
 
   void gather_bsdf(const Task& task);
   void gather_points(const Task& task, const PassSampler& sampler, int depth);
@@ -119,6 +130,11 @@ class DirectLight {
   std::vector<double> expected_;    ///< samples per slot
   std::vector<bool> line_slots_;    ///< whether it is a line strategy
   Combiner combiner_;
+  // For arrivals: the parts of a line; of each candidate, its part's bin and its share in the line's visible
+  // measure.
+  std::vector<LinePart> parts_;
+  std::vector<int> bins_;
+  std::vector<double> shares_;
 };
 
 }  // namespace penumbra

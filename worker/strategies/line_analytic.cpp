@@ -13,21 +13,42 @@ LightLine through(const LineAnalyticStrategy& strategy, const LightView&, const 
   return strategy.chords.through(p);
 }
 
-Rgb closed_form(const LightView& view, const LightLine& line, std::span<const Interval> visible) {
+namespace {
+
+/// Of what is above the horizon, and below.
+struct Sides {
+  double above = 0, below = 0;
+};
+
+/// [lo,hi] does not cross the horizon: its middle tells the side.
+void add(Sides& sides, const LightView& view, const LightLine& line, double lo, double hi) {
   const ShadingPoint& point = view.point();
   const Vec3d x = view.x(), normal(point.normal), ns(point.bsdf->ns());
-  // Visible intervals do not cross the horizon: their middle tells the side.
-  double above = 0, below = 0;
-  for (const Interval& part : visible) {
-    const double middle = 0.5 * (double(part.lo) + part.hi);
-    const bool is_above = normal.dot((line.corner - x) + (line.from + middle * line.along)) > 0;
-    (is_above ? above : below) += line_irradiance(line, x, ns, part.lo, part.hi);
-  }
+  const bool is_above = normal.dot((line.corner - x) + (line.from + 0.5 * (lo + hi) * line.along)) > 0;
+  (is_above ? sides.above : sides.below) += line_irradiance(line, x, ns, lo, hi);
+}
+
+Rgb scattered(const LightView& view, const LightLine& line, const Sides& sides) {
+  const ShadingPoint& point = view.point();
   // The density of the offset is scale × chord length.
   const double density = line.scale * line.along.length();
-  Rgb sum = point.bsdf->lambertian(true) * float(above / density);
-  if (below > 0) sum += point.bsdf->lambertian(false) * float(below / density);
+  Rgb sum = point.bsdf->lambertian(true) * float(sides.above / density);
+  if (sides.below > 0) sum += point.bsdf->lambertian(false) * float(sides.below / density);
   return sum * view.area().radiance;
+}
+
+}  // namespace
+
+Rgb closed_form(const LightView& view, const LightLine& line, std::span<const Interval> visible) {
+  Sides sides;
+  for (const Interval& part : visible) add(sides, view, line, part.lo, part.hi);
+  return scattered(view, line, sides);
+}
+
+Rgb closed_form(const LightView& view, const LightLine& line, double lo, double hi) {
+  Sides sides;
+  add(sides, view, line, lo, hi);
+  return scattered(view, line, sides);
 }
 
 }  // namespace penumbra

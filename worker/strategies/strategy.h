@@ -143,6 +143,9 @@ LightLine line_through(const Strategy& strategy, const LightView& view, const Ve
 /// line's offset: an estimate of the light's part in it, by one random number.
 Rgb closed_form(const LightView& view, const LightLine& line, std::span<const Interval> visible);
 
+/// The same of [lo,hi], a part of one visible interval.
+Rgb closed_form(const LightView& view, const LightLine& line, double lo, double hi);
+
 /// A point of the view's area light as a sample (direction, radiance).
 LightSample towards(const LightView& view, const LightPoint& at);
 

@@ -31,6 +31,28 @@ void floor_variances(std::vector<std::vector<Block>>& all) {
   }
 }
 
+/// What is compared: the blocks of all pairs of mixes.
+struct Pairs {
+  std::vector<double> a, b, variance;
+  std::vector<std::string> names;
+
+  void add(const std::vector<FilmImage>& images, const std::vector<std::string>& mixes, const PixelRect& crop,
+           const std::string& what) {
+    std::vector<std::vector<Block>> all;
+    for (const FilmImage& image : images) all.push_back(blocks(image, crop));
+    floor_variances(all);
+    for (size_t i = 0; i < all.size(); ++i)
+      for (size_t j = i + 1; j < all.size(); ++j)
+        for (size_t k = 0; k < all[i].size(); ++k)
+          for (int c = 0; c < 3; ++c) {
+            a.push_back(all[i][k].mean[c]);
+            b.push_back(all[j][k].mean[c]);
+            variance.push_back(all[i][k].variance[c] + all[j][k].variance[c]);
+            names.push_back(what + mixes[i] + " against " + mixes[j] + ", block " + std::to_string(k));
+          }
+  }
+};
+
 }  // namespace
 
 void expect_agreement(const ScenePtr& scene, const std::vector<std::string>& mixes,
@@ -41,24 +63,17 @@ void expect_agreement(const ScenePtr& scene, const std::vector<std::string>& mix
   spec.tile = how.tile;
   spec.max_depth = 3;
   if (how.crop.x1 > how.crop.x0) spec.crop = how.crop;
+  spec.transient = how.transient;
   const Rendered rendered = render(*scene, spec, how.group);
-  std::vector<std::vector<Block>> all;
-  for (size_t m = 0; m < mixes.size(); ++m) {
-    EXPECT_EQ(rendered.costs[m].non_finite, 0u) << mixes[m];
-    all.push_back(blocks(rendered.images[m], spec.crop));
+  for (size_t m = 0; m < mixes.size(); ++m) EXPECT_EQ(rendered.costs[m].non_finite, 0u) << mixes[m];
+  Pairs pairs;
+  pairs.add(rendered.images, mixes, spec.crop, "");
+  for (int b = 0; how.transient && b < how.transient->bins; ++b) {
+    std::vector<FilmImage> bin;
+    for (const std::vector<FilmImage>& bins : rendered.bins) bin.push_back(bins[size_t(b)]);
+    pairs.add(bin, mixes, spec.crop, "bin " + std::to_string(b) + ": ");
   }
-  floor_variances(all);
-  std::vector<double> a, b, variance;
-  std::vector<std::string> names;
-  for (size_t i = 0; i < all.size(); ++i)
-    for (size_t j = i + 1; j < all.size(); ++j)
-      for (size_t k = 0; k < all[i].size(); ++k)
-        for (int c = 0; c < 3; ++c) {
-          a.push_back(all[i][k].mean[c]);
-          b.push_back(all[j][k].mean[c]);
-          variance.push_back(all[i][k].variance[c] + all[j][k].variance[c]);
-          names.push_back(mixes[i] + " against " + mixes[j] + ", block " + std::to_string(k));
-        }
+  const auto& [a, b, variance, names] = pairs;
   const ZTest z = z_test(a, b, variance, 0.001);
   ASSERT_GT(z.compared, 0);
   EXPECT_TRUE(z.passes()) << z.rejected << " of " << z.compared << " rejected; worst |z| " << z.largest

@@ -1,6 +1,7 @@
 #pragma once
 // Every strategy against every other: they estimate the same picture by different roads, so their block means
 // must agree.
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ struct AgreementSpec {
   int64_t passes = 64, group = 1;
   int tile = 64;
   SamplerKind sampler = SamplerKind::kIndependent;
+  std::optional<Transient> transient = {};  ///< then every bin is compared as well
   PixelRect crop{0, 0, 0, 0};  ///< where the pictures are compared; empty: everywhere
 };
 

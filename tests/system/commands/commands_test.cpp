@@ -11,6 +11,7 @@
 #include <iterator>
 
 #include "client/run_json.h"
+#include "film/exr.h"
 
 namespace penumbra {
 namespace {
@@ -110,6 +111,46 @@ TEST_F(Commands, AnUnknownCommandIsNamed) {
   EXPECT_THAT(said.out, HasSubstr("'rendr'"));
   EXPECT_EQ(run("").code, 2);
   EXPECT_EQ(run("--help").code, 0);
+}
+
+TEST_F(Commands, BinsOfPathLengthAreReplayedAndTheFolderHoldsOneExrPerMix) {
+  const std::string job = "render " + kSmall + "--spp 16 --tile 16 --mix sa:1 --mix line-sa@u:1 ";
+  ASSERT_EQ(run(job + "--out plain").code, 0);
+  const Said said = run(job + "--transient 8,28,10 --out binned --json");
+  ASSERT_EQ(said.code, 0) << said.out;
+  const Json json = read("binned/run.json");
+  EXPECT_EQ(json["transient"], Json({{"t0", 8.0}, {"t1", 28.0}, {"bins", 10}}));
+  EXPECT_EQ(json["needs"].back(), Json({{"effect", "transient"}, {"why", "--transient 8,28,10"}}));
+  EXPECT_EQ(read("plain/run.json")["transient"], Json(nullptr));
+  size_t images = 0;
+  for (const auto& entry : fs::directory_iterator(path("binned"))) images += entry.path().extension() == ".exr";
+  EXPECT_EQ(images, 2u);
+  for (const char* name : {"/sa-1_balance.exr", "/line-sa-u-1_balance.exr"}) {
+    const auto plain = read_exr(path("plain") + name), picture = read_exr(path("binned") + name);
+    ASSERT_TRUE(plain.ok() && picture.ok());
+    EXPECT_EQ(plain->rgb, picture->rgb) << "the picture changed";
+    const auto bins = read_exr_bins(path("binned") + name);
+    ASSERT_TRUE(bins.ok()) << bins.status();
+    EXPECT_EQ(bins->images.size(), 10u);
+    EXPECT_FALSE(read_exr_bins(path("plain") + name).ok());
+  }
+  const Said again = run("replay binned/run.json --verify --workers 1 --quiet --out again");
+  EXPECT_EQ(again.code, 0) << again.out;
+  // One bit of one bin.
+  auto bins = *read_exr_bins(path("binned/sa-1_balance.exr"));
+  const auto picture = *read_exr(path("binned/sa-1_balance.exr"));
+  float& value = bins.images[4].rgb[1500];
+  value = std::nextafter(value, 100.f);
+  ExrHeader header;
+  header.transient = bins.transient;
+  ASSERT_TRUE(write_exr(path("binned/sa-1_balance.exr"), picture, header, bins.images).ok());
+  const Said changed = run("replay binned/run.json --verify --quiet --out once_more");
+  EXPECT_EQ(changed.code, 1);
+  EXPECT_THAT(changed.out, HasSubstr("1 of 11264 pixels differ"));
+  const Said refused = run("render " + kSmall + "--transient 0,1,5000");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.out, HasSubstr("--transient: 5000 bins"));
+  EXPECT_EQ(run("converge " + kScene + " --quiet --pixel 9,9 --transient 0,1,4").code, 2);
 }
 
 TEST_F(Commands, GateRefusesBadUsage) {

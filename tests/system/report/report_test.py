@@ -21,10 +21,11 @@ SVG = "{http://www.w3.org/2000/svg}"
 
 
 def setUpModule():
-    global FOLDER, RUN, ALONE
+    global FOLDER, RUN, ALONE, TRANSIENT
     FOLDER = tempfile.TemporaryDirectory(prefix="penumbra_report_")
     RUN = runs.with_reference(PROGRAM, SCENE, pathlib.Path(FOLDER.name))
     ALONE = runs.without_reference(PROGRAM, SCENE, pathlib.Path(FOLDER.name))
+    TRANSIENT = runs.transient(PROGRAM, SCENE, pathlib.Path(FOLDER.name))
 
 
 def tearDownModule():
@@ -338,6 +339,43 @@ class WithoutReference(Page):
 
     def test_a_budget_in_samples_has_no_adherence(self):
         self.assertIn("CPU seconds per mix", self.browser.text("#budget-section h2"))
+
+
+    def test_has_no_flip_book(self):
+        self.assertEqual(self.js("return document.querySelectorAll('#flip-section').length"), 0)
+
+
+class Transient(Page):
+    run_folder = staticmethod(lambda: TRANSIENT)
+
+    def shown(self):
+        return self.js("return [...document.querySelectorAll('#flips img')].map((i) => i.src)")
+
+    def test_the_slider_turns_the_pages(self):
+        self.browser.wait("return [...document.querySelectorAll('#flips img')].every((i) => i.complete && i.naturalWidth === 96)")
+        first = self.shown()
+        self.assertEqual(len(first), 2)
+        seen = set()
+        for bin in range(10):
+            self.slide("#bin", bin)
+            seen.add(self.shown()[0])
+            self.assertIn(f"bin {bin} of 10", self.browser.text("#bin-value"))
+            self.assertIn(f"{4 * bin} to {4 * bin + 4}", self.browser.text("#bin-value"))
+        self.assertGreater(len(seen), 3, "light arrives in several bins")
+        self.assertEqual(self.js("return performance.getEntriesByType('resource').filter((e) => !e.name.startsWith('data:')).length"), 0)
+
+    def test_it_plays_and_stops(self):
+        self.click("#flip")
+        self.browser.wait("return document.getElementById('bin').value !== '0'")
+        self.assertEqual(self.browser.text("#flip"), "pause")
+        self.click("#flip")
+        at = self.js("return document.getElementById('bin').value")
+        time.sleep(0.4)
+        self.assertEqual(self.js("return document.getElementById('bin').value"), at)
+
+    def test_the_run_says_so(self):
+        self.assertIn("transient", self.browser.text("#run"))
+        self.assertIn("10 over 0 to 40", self.browser.text("#run"))
 
 
 if __name__ == "__main__":

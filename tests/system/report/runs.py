@@ -28,3 +28,7 @@ def with_reference(program, scene, folder):
 
 def without_reference(program, scene, folder):
     return render(program, scene, folder / "alone", "--spp", 16)
+
+
+def transient(program, scene, folder):
+    return render(program, scene, folder / "transient", "--spp", 4, "--transient", "0,40,10", mixes=["sa:1", "line-sa@u:1"])

@@ -84,5 +84,27 @@ TEST(FrameAssembler, RefusesWhatDoesNotFit) {
   EXPECT_THAT(fault(shorter), HasSubstr("do not fill"));
 }
 
+v1::FrameChunk bin_chunk(int bin) {
+  v1::FrameChunk c = chunk(0, 0, {2, 1, 6, 5}, true, true);
+  c.set_bin(bin);
+  c.clear_samples();
+  c.clear_cost();
+  return c;
+}
+
+TEST(FrameAssembler, BinsAreFramesOfTheirOwn) {
+  JobSpec with_bins = spec();
+  with_bins.transient = Transient{0, 1, 2};
+  FrameAssembler assembler(with_bins);
+  const auto bin = assembler.add(bin_chunk(2));
+  ASSERT_TRUE(bin.ok()) << message_of(bin.status());
+  ASSERT_TRUE(bin->has_value());
+  EXPECT_EQ((**bin).bin, 2);
+  EXPECT_EQ((**bin).image.variance.size(), 48u);
+  EXPECT_TRUE((**bin).image.samples.empty());
+  EXPECT_FALSE(assembler.add(bin_chunk(3)).ok()) << "there are two";
+  EXPECT_FALSE(FrameAssembler(spec()).add(bin_chunk(1)).ok()) << "the job has none";
+}
+
 }  // namespace
 }  // namespace penumbra

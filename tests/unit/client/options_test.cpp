@@ -69,6 +69,7 @@ TEST(MakeJob, OptionsOverride) {
   o.max_depth = "3";
   o.tile = "16";
   o.camera_grid = "4";
+  o.transient = "1.5,20,64";
   o.seed = "7";
   o.reference = "r.exr";
   const auto job = make_job(o, small_scene());
@@ -82,6 +83,7 @@ TEST(MakeJob, OptionsOverride) {
   EXPECT_EQ(job->max_depth, 3);
   EXPECT_EQ(job->camera_grid, 4);
   EXPECT_EQ(job->tile, 16);
+  EXPECT_EQ(job->transient, (Transient{1.5, 20, 64}));
   EXPECT_EQ(job->seed, 7u);
   EXPECT_TRUE(job->reference.ends_with("/r.exr"));
 }
@@ -100,10 +102,25 @@ TEST(MakeJob, EveryFaultNamesItsFlag) {
   EXPECT_THAT(with(&JobOptions::crop, "0,0,65,48"), StartsWith("--crop: "));
   EXPECT_THAT(with(&JobOptions::crop, "5,5"), StartsWith("--crop: "));
   EXPECT_THAT(with(&JobOptions::camera_grid, "0"), StartsWith("--camera-grid: "));
+  for (const char* bins : {"1,2", "1,2,3,4", "2,1,4", "-1,2,4", "0,1,0", "0,1,1025", "0,inf,4", "0,nan,4", "1,1.000001,100"})
+    EXPECT_THAT(with(&JobOptions::transient, bins), StartsWith("--transient: ")) << bins;
   EXPECT_THAT(with(&JobOptions::max_depth, "0"), StartsWith("--max-depth: "));
   EXPECT_THAT(with(&JobOptions::tile, "5000"), StartsWith("--tile: "));
   EXPECT_THAT(with(&JobOptions::seed, "-1"), StartsWith("--seed: "));
   EXPECT_THAT(with(&JobOptions::sampler, "halton"), StartsWith("--sampler: "));
+}
+
+TEST(MakeJob, BinsThatATileOrThePictureCannotHoldAreRefused) {
+  JobOptions o = plain();
+  o.resolution = "4096x4096";
+  o.transient = "0,1,8";
+  EXPECT_THAT(fault(o), testing::AllOf(StartsWith("--transient: "), testing::HasSubstr("pixels")));
+  o.resolution = "256x256";
+  o.transient = "0,1,1024";
+  o.tile = "128";
+  EXPECT_THAT(fault(o), testing::AllOf(StartsWith("--transient: "), testing::HasSubstr("--tile")));
+  o.tile = "32";
+  EXPECT_TRUE(make_job(o, small_scene()).ok());
 }
 
 TEST(MakeJob, MixesAreChecked) {

@@ -216,5 +216,46 @@ TEST_F(Exr, ReadsAReferenceOfAnotherRenderer) {
   EXPECT_NEAR(mean, 0.354188, 1e-6);
 }
 
+std::vector<FilmImage> sample_bins() {
+  std::vector<FilmImage> bins(12, sample_image());
+  for (size_t b = 0; b < bins.size(); ++b) {
+    bins[b].samples.clear();
+    bins[b].cost.clear();
+    for (float& v : bins[b].rgb) v += static_cast<float>(b);
+  }
+  return bins;
+}
+
+TEST_F(Exr, BinsAreFurtherPartsAndReadersOfOnePartSeeThePicture) {
+  const FilmImage image = sample_image();
+  const std::vector<FilmImage> bins = sample_bins();
+  ExrHeader header;
+  header.transient = Transient{0.5, 4, 12};
+  ASSERT_TRUE(write_exr(path("a.exr"), image, header, bins).ok());
+  const auto picture = read_exr(path("a.exr"));
+  ASSERT_TRUE(picture.ok()) << message_of(picture.status());
+  EXPECT_EQ(picture->rgb, image.rgb);
+  EXPECT_EQ(picture->variance, image.variance);
+  EXPECT_EQ(picture->samples, image.samples);
+  EXPECT_EQ(picture->window, image.window);
+  const auto back = read_exr_bins(path("a.exr"));
+  ASSERT_TRUE(back.ok()) << message_of(back.status());
+  EXPECT_EQ(back->transient, *header.transient);
+  ASSERT_EQ(back->images.size(), bins.size());
+  for (size_t b = 0; b < bins.size(); ++b) {
+    EXPECT_EQ(back->images[b].rgb, bins[b].rgb) << b;
+    EXPECT_EQ(back->images[b].variance, bins[b].variance) << b;
+    EXPECT_TRUE(back->images[b].samples.empty());
+  }
+}
+
+TEST_F(Exr, AFileWithoutBinsSaysSo) {
+  ASSERT_TRUE(write_exr(path("a.exr"), sample_image(), {}).ok());
+  const auto bins = read_exr_bins(path("a.exr"));
+  EXPECT_TRUE(absl::IsInvalidArgument(bins.status()));
+  EXPECT_THAT(message_of(bins.status()), HasSubstr("no bins"));
+  EXPECT_TRUE(absl::IsNotFound(read_exr_bins(path("none.exr")).status()));
+}
+
 }  // namespace
 }  // namespace penumbra

@@ -90,10 +90,57 @@ TEST(TileResult, CountsOfBlocksMustFit) {
 TEST(TileResult, ResultsFromBeforeThereWereBlocksAreRead) {
   std::string bytes = serialize({{sample_tile()}});
   bytes[4] = 1;             // the version
-  bytes.erase(12 + 32, 4);  // the number of blocks, behind rect, passes and groups
+  bytes.erase(12 + 32, 8);  // the numbers of blocks and bins, behind rect, passes and groups
   const auto back = ReceivedTile::parse(bytes);
   ASSERT_TRUE(back.ok()) << message_of(back.status());
   EXPECT_EQ(copy(back->mixes()[0].mean), sample_tile().mean);
+}
+
+TEST(TileResult, ResultsFromBeforeThereWereBinsAreRead) {
+  std::string bytes = serialize({{sample_tile()}});
+  bytes[4] = 2;
+  bytes.erase(12 + 36, 4);
+  const auto back = ReceivedTile::parse(bytes);
+  ASSERT_TRUE(back.ok()) << message_of(back.status());
+  EXPECT_EQ(back->mixes()[0].bins, 0);
+  EXPECT_EQ(copy(back->mixes()[0].mean), sample_tile().mean);
+}
+
+TilePixels binned_tile() {
+  TilePixels p = sample_tile();
+  p.bins = 2;
+  for (int i = 0; i < 36; ++i) {
+    p.bin_mean.push_back(static_cast<float>(i));
+    p.bin_m2.push_back(0.5f * static_cast<float>(i));
+  }
+  return p;
+}
+
+TEST(TileResult, BinsComeBack) {
+  const auto back = ReceivedTile::parse(serialize({{binned_tile(), sample_tile()}}));
+  ASSERT_TRUE(back.ok()) << message_of(back.status());
+  const TileView second = back->mixes()[0].bin(1);
+  EXPECT_EQ(back->mixes()[0].bins, 2);
+  EXPECT_EQ(second.mean.size(), 18u);
+  EXPECT_EQ(second.mean[0], 18);
+  EXPECT_EQ(second.m2[17], 17.5f);
+  EXPECT_EQ(second.passes, 8);
+  EXPECT_EQ(second.groups, 2);
+  EXPECT_TRUE(second.cost.empty());
+  EXPECT_EQ(back->mixes()[1].bins, 0);
+}
+
+TEST(TileResult, BinsMustFit) {
+  const auto fault = [](auto break_it) {
+    TilePixels p = binned_tile();
+    break_it(p);
+    return fault_of(p);
+  };
+  EXPECT_TRUE(fault([](TilePixels&) {}).empty());
+  EXPECT_FALSE(fault([](TilePixels& p) { p.bins = 3; }).empty());
+  EXPECT_FALSE(fault([](TilePixels& p) { p.bin_m2.pop_back(); }).empty());
+  EXPECT_FALSE(fault([](TilePixels& p) { p.bin_m2[3] = -1; }).empty());
+  EXPECT_FALSE(fault([](TilePixels& p) { p.bin_mean[3] = std::numeric_limits<float>::infinity(); }).empty());
 }
 
 TEST(TileResult, AMixWithoutPassesIsNotSent) {
@@ -132,7 +179,7 @@ std::string with(size_t offset, Number value) {
 
 TEST(TileResult, LiesAreRefused) {
   EXPECT_FALSE(ReceivedTile::parse(with<char>(0, 'X')).ok());
-  EXPECT_FALSE(ReceivedTile::parse(with<uint32_t>(4, 3)).ok()) << "version";
+  EXPECT_FALSE(ReceivedTile::parse(with<uint32_t>(4, 4)).ok()) << "version";
   EXPECT_FALSE(ReceivedTile::parse(with<uint32_t>(8, 0xffffffff)).ok()) << "number of mixes";
   EXPECT_FALSE(ReceivedTile::parse(with<int32_t>(kFirstMix, -1)).ok()) << "x0";
   EXPECT_FALSE(ReceivedTile::parse(with<int32_t>(kFirstMix + 8, 64)).ok()) << "empty rect";
@@ -141,10 +188,11 @@ TEST(TileResult, LiesAreRefused) {
   EXPECT_FALSE(ReceivedTile::parse(with<int64_t>(kFirstMix + 24, 0)).ok()) << "no group";
   EXPECT_FALSE(ReceivedTile::parse(with<int64_t>(kFirstMix + 24, 9)).ok()) << "more groups than passes";
   EXPECT_FALSE(ReceivedTile::parse(with<uint32_t>(kFirstMix + 32, 0xffffffff)).ok()) << "number of blocks";
+  EXPECT_FALSE(ReceivedTile::parse(with<uint32_t>(kFirstMix + 36, 0xffffffff)).ok()) << "number of bins";
 }
 
 TEST(TileResult, NothingNonFiniteEnters) {
-  const size_t mean = kFirstMix + 36, m2 = mean + 18 * 4, cost = m2 + 18 * 4;
+  const size_t mean = kFirstMix + 40, m2 = mean + 18 * 4, cost = m2 + 18 * 4;
   for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()})
     for (const size_t place : {mean, m2, cost + 5 * 4})
       EXPECT_FALSE(ReceivedTile::parse(with(place, bad)).ok());

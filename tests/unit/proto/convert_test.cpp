@@ -51,6 +51,9 @@ TEST(Convert, JobSpecsComeBack) {
   spec.budget = TargetErrorBudget{1e-3};
   spec.sampler = SamplerKind::kIndependent;
   expect_round_trip(spec);
+  spec.transient = Transient{0.5, 12.25, 40};
+  expect_round_trip(spec);
+  spec.transient.reset();
   spec.probe = Probe{};
   expect_round_trip(spec);
   spec.probe = Probe{Probe::Kind::kIntegrand, 256, 128, 9, 7, 2, {0, 1, 0}};
@@ -202,6 +205,23 @@ TEST(Convert, ValuesOutOfRangeAreRefusedByName) {
       {"crop", [](v1::JobSpec& s) { s.mutable_crop()->set_x1(10); }},
       {"rect", [](v1::JobSpec& s) { s.mutable_crop()->set_x0(-1); }},
       {"tile", [](v1::JobSpec& s) { s.set_tile(0); }},
+      {"transient", [](v1::JobSpec& s) { s.mutable_transient()->set_bins(1); }},
+      {"transient",
+       [](v1::JobSpec& s) {
+         s.mutable_transient()->set_t1(1);
+         s.mutable_transient()->set_bins(1025);
+       }},
+      {"transient",
+       [](v1::JobSpec& s) {
+         s.mutable_transient()->set_t1(std::numeric_limits<double>::infinity());
+         s.mutable_transient()->set_bins(1);
+       }},
+      {"transient",
+       [](v1::JobSpec& s) {
+         s.mutable_transient()->set_t0(1);
+         s.mutable_transient()->set_t1(1.000001);
+         s.mutable_transient()->set_bins(16);
+       }},
       {"camera_grid", [](v1::JobSpec& s) { s.set_camera_grid(-1); }},
       {"max_depth", [](v1::JobSpec& s) { s.set_max_depth(0); }},
       {"plan", [](v1::JobSpec& s) { s.add_plan(1); }},

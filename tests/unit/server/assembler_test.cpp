@@ -48,6 +48,11 @@ class AssemblerTest : public testing::Test {
         pixels.m2.push_back(std::uniform_real_distribution<float>()(random));
       }
       pixels.cost.assign(n, 1);
+      pixels.bins = job_.bins;
+      for (size_t i = 0; i < 3 * n * static_cast<size_t>(job_.bins); ++i) {
+        pixels.bin_mean.push_back(static_cast<float>(1 + i / (3 * n)));
+        pixels.bin_m2.push_back(0);
+      }
       result.mixes.push_back(std::move(pixels));
     }
     const std::string bytes = serialize(result);
@@ -122,6 +127,29 @@ TEST_F(AssemblerTest, ALostBlobIsAnError) {
   fs::remove(blobs_->path_of(job_.results[3]));
   const auto ignore = [](const AssembledFrame&) { return absl::OkStatus(); };
   EXPECT_FALSE(assemble(job_, *blobs_, false, 1 << 30, ignore).ok());
+}
+
+TEST_F(AssemblerTest, BinsComeBehindTheirPictureWhateverTheMemory) {
+  job_.bins = 3;
+  for (uint64_t i = 0; i < job_.results.size(); ++i) store(i);
+  for (const uint64_t memory : {uint64_t{1}, uint64_t{1} << 30}) {
+    const std::vector<AssembledFrame> frames = assembled(true, memory);
+    std::vector<AssembledFrame> final;
+    for (const AssembledFrame& frame : frames) {
+      EXPECT_TRUE(frame.final || !frame.bin) << "a bin at a checkpoint";
+      if (frame.final) final.push_back(frame);
+    }
+    ASSERT_EQ(final.size(), 8u);
+    for (int m = 0; m < 2; ++m) {
+      EXPECT_FALSE(final[4 * m].bin);
+      for (int b = 0; b < 3; ++b) {
+        const AssembledFrame& frame = final[4 * m + 1 + b];
+        EXPECT_EQ(frame.mix, m);
+        EXPECT_EQ(frame.bin, b);
+        EXPECT_FLOAT_EQ(frame.image.rgb[100], static_cast<float>(1 + b));
+      }
+    }
+  }
 }
 
 }  // namespace
