@@ -9,7 +9,7 @@
 
 namespace penumbra {
 
-inline constexpr uint32_t kSyncProtocol = 2;
+inline constexpr uint32_t kSyncProtocol = 3;
 
 /// Names one lease for ever: the epoch grows each time the task is leased again.
 struct LeaseId {
