@@ -122,6 +122,7 @@ void add_job_options(CLI::App& app, JobOptions& o) {
          "Combinations: /balance (default) /free /power /average /smooth=WIDTH|auto /smooth-ease=WIDTH|auto. "
          "Last, where there are media: /medium=point (default) or /medium=line, lit by lines from the lights. "
          "Last, where the camera has a lens: /lens=point (default) or /lens=line, chords of it. "
+         "Last, where something moves: /motion=point (default) or /motion=line, intervals of time. "
          "Or auto, alone: the planner chooses for each tile. "
          "Default: the scene's Integrator \"pointline\", else auto")
       ->type_name("MIX")

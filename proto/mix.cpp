@@ -113,12 +113,12 @@ absl::Status parse_combination(std::string_view word, Mix& mix) {
   } else {
     return fault(word,
                  "unknown combination; there are balance, free, power, average, smooth=WIDTH|auto, "
-                 "smooth-ease=WIDTH|auto, and after it lens=point|line and medium=point|line");
+                 "smooth-ease=WIDTH|auto, and after it lens=point|line, medium=point|line and motion=point|line");
   }
   return absl::OkStatus();
 }
 
-/// `lens=` or `medium=`; false: another word.
+/// `lens=`, `medium=` or `motion=`; false: another word.
 absl::StatusOr<bool> parse_effect(std::string_view word, Mix& mix) {
   const auto lines = [](std::string_view value, std::string_view message) -> absl::StatusOr<bool> {
     if (value != "point" && value != "line") return fault(value, message);
@@ -132,6 +132,11 @@ absl::StatusOr<bool> parse_effect(std::string_view word, Mix& mix) {
   if (consume_prefix(word, "medium=")) {
     ASSIGN_OR_RETURN(const bool line, lines(word, "media are lit by medium=point or medium=line"));
     mix.medium = line ? MediumSampling::kLine : MediumSampling::kPoint;
+    return true;
+  }
+  if (consume_prefix(word, "motion=")) {
+    ASSIGN_OR_RETURN(const bool line, lines(word, "motion is sampled by motion=point or motion=line"));
+    mix.motion = line ? MotionSampling::kLine : MotionSampling::kPoint;
     return true;
   }
   return false;
@@ -149,9 +154,11 @@ absl::Status parse_rest(std::string_view rest, Mix& mix) {
       effects = true;
       continue;
     }
-    if (effects) return fault(word, "lens= and medium= must stand last");
+    if (effects) return fault(word, "lens=, medium= and motion= must stand last");
     if (!first)
-      return fault(word, "after the combination there is only lens=point|line and medium=point|line");
+      return fault(word,
+                   "after the combination there is only lens=point|line, medium=point|line and "
+                   "motion=point|line");
     RETURN_IF_ERROR(parse_combination(word, mix));
   }
   return absl::OkStatus();
@@ -254,8 +261,9 @@ std::string label(const Mix& mix) {
   std::string out;
   for (const StrategyCount& s : mix.strategies)
     out += fmt::format("{}{}:{}", out.empty() ? "" : "+", name_of(s), s.count);
-  return fmt::format("{}/{}{}{}", out, name_of(mix), mix.lens == LensSampling::kLine ? "/lens=line" : "",
-                     mix.medium == MediumSampling::kLine ? "/medium=line" : "");
+  return fmt::format("{}/{}{}{}{}", out, name_of(mix), mix.lens == LensSampling::kLine ? "/lens=line" : "",
+                     mix.medium == MediumSampling::kLine ? "/medium=line" : "",
+                     mix.motion == MotionSampling::kLine ? "/motion=line" : "");
 }
 
 std::vector<std::string> labels(const std::vector<Mix>& mixes) {

@@ -43,6 +43,10 @@ enum class MediumSampling { kPoint, kLine };
 /// is known exactly. Nothing where the camera is a pinhole.
 enum class LensSampling { kPoint, kLine };
 
+/// How the time while the shutter is open is sampled where something moves: by points in time, or by the intervals
+/// of time in which a camera ray sees one thing, which are known. Nothing where nothing moves.
+enum class MotionSampling { kPoint, kLine };
+
 struct Mix {
   bool automatic = false;  ///< `auto`: the planner chooses per tile; then strategies is empty
   std::vector<StrategyCount> strategies;
@@ -51,16 +55,19 @@ struct Mix {
   SmoothShape smooth_shape = SmoothShape::kCubic;  ///< kSmooth
   MediumSampling medium = MediumSampling::kPoint;
   LensSampling lens = LensSampling::kPoint;
+  MotionSampling motion = MotionSampling::kPoint;
   bool operator==(const Mix&) const = default;
 
   int samples() const;  ///< light samples per shading point and light
 };
 
-/// Reads the grammar of interface.md: strategy[:count] joined by `+`, then /combination, then /lens=point|line and /medium=point|line.
+/// Reads the grammar of interface.md: strategy[:count] joined by `+`, then /combination, then /lens=point|line,
+/// /medium=point|line and /motion=point|line.
 /// InvalidArgument names the word at fault.
 absl::StatusOr<Mix> parse_mix(std::string_view text);
 
-/// The normal form: counts and combination always written, lens=line and medium=line where it is so. parse_mix(label(m)) == m.
+/// The normal form: counts and combination always written, lens=line, medium=line and
+/// motion=line where it is so. parse_mix(label(m)) == m.
 std::string label(const Mix& mix);
 
 /// Labels of a job's mixes; a repeated mix gets `#2`, `#3`, …

@@ -5,6 +5,7 @@
 #include "scenes/needs.h"
 #include "scenes/pbrt_names.h"
 #include "scenes/unsupported_media.h"
+#include "scenes/unsupported_motion.h"
 
 namespace penumbra {
 namespace {
@@ -69,7 +70,7 @@ struct Effect {
 
 constexpr Effect kEffects[] = {
     {"lens", "a pinhole instead", true},
-    {"motion", "everything stands as when the shutter opens", false},
+    {"motion", "everything stands as when the shutter opens", true},
     {"media", "vacuum instead", true},
 };
 
@@ -90,6 +91,7 @@ std::vector<std::string> unsupported(const SceneDescription& description) {
   add_left_out(description, out);
   add_effects(description, out);
   if (PENUMBRA_EFFECTS) add_unsupported_media(description, out);
+  if (PENUMBRA_EFFECTS) add_unsupported_motion(description, out);
   return out;
 }
 

@@ -18,6 +18,8 @@ class MediumStage;
 
 struct Effects {
   std::shared_ptr<const CameraStage> camera;  ///< worker/render/camera_stage.h
+  bool lens = false;                          ///< the camera stage has one
+  bool motion = false;                        ///< shapes and instances move, as scenes/standing.h says
   std::shared_ptr<const MediumStage> media;   ///< worker/render/medium_stage.h
 };
 

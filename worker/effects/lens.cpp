@@ -62,6 +62,7 @@ CameraRay Lens::ray(const CameraRay& pinhole, const Vec3d& from) const {
   ray.direction = unit(at_unit_depth(pinhole.direction) * scale - lens);
   ray.direction_dx = unit(at_unit_depth(pinhole.direction_dx) * scale - lens);
   ray.direction_dy = unit(at_unit_depth(pinhole.direction_dy) * scale - lens);
+  ray.time = pinhole.time;
   return ray;
 }
 

@@ -6,15 +6,12 @@
 #include <numbers>
 
 #include "worker/effects/lens.h"
+#include "worker/effects/looks.h"
 
 namespace penumbra {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-
-/// An interval of at least 1/kParts of the chord is looked at for sure, the shorter ones together by as many
-/// rays as their sum holds such parts.
-constexpr int kParts = 8;
 
 /// The offset s in [-1,1] with distribution ∫ 2√(1−s²)/π = u. With s = −cos(θ/2) it is (θ − sin θ)/2π,
 /// θ in [0,2π]: Kepler's equation of eccentricity 1.
@@ -34,22 +31,6 @@ double chord_offset(double u) {
   return upper ? s : -s;
 }
 
-/// A surface seen along the chord from lo to hi: of one mesh, for what its triangles share is worth one look.
-struct Stretch {
-  double lo, hi;
-  uint32_t instance, mesh;
-};
-
-void merge(const std::vector<SeenInterval>& seen, std::vector<Stretch>& out) {
-  out.clear();
-  for (const SeenInterval& interval : seen) {
-    if (!out.empty() && out.back().instance == interval.id.instance && out.back().mesh == interval.id.mesh)
-      out.back().hi = interval.hi;
-    else
-      out.push_back({interval.lo, interval.hi, interval.id.instance, interval.id.mesh});
-  }
-}
-
 }  // namespace
 
 DiskChord disk_chord(const Vec2d& u) {
@@ -58,39 +39,17 @@ DiskChord disk_chord(const Vec2d& u) {
   return {across * s - along * half, across * s + along * half};
 }
 
-/// Every stretch is a stratum: one uniform point in each, weighted by its length, estimates the mean over the
-/// chord without bias whatever the stretches are. Their number is bounded by drawing the short ones: they are
-/// laid end to end, and cut into equal parts of which each has one point.
 void Lens::chord_rays(const CameraRay& pinhole, const CameraDraw& draw, std::vector<WeightedRay>& out) const {
   thread_local std::vector<SeenInterval> seen;
-  thread_local std::vector<Stretch> stretches;
+  thread_local std::vector<Look> looks;
   const DiskChord chord = disk_chord(draw.sampler.lens(draw.i, draw.n));
   const Vec3d a = on_lens(chord.a), b = on_lens(chord.b);
-  draw.geometry.nearest({a, b, centre_ + at_unit_depth(pinhole.direction) * focal_distance_}, seen,
-                        draw.counters);
-  merge(seen, stretches);
-
-  const double u = draw.sampler.along_lens(draw.i, draw.n);
-  const auto look = [&](double v, double weight) {
-    out.push_back({ray(pinhole, a + (b - a) * v), float(weight)});
-  };
-  double rest = 0;
-  for (const Stretch& s : stretches) {
-    const double length = s.hi - s.lo;
-    if (length * kParts < 1)
-      rest += length;
-    else
-      look(s.lo + u * length, length);
-  }
-  if (!(rest > 0)) return;
-  const double parts = std::ceil(rest * kParts), step = rest / parts;
-  double laid = 0, next = u * step;
-  for (const Stretch& s : stretches) {
-    const double length = s.hi - s.lo;
-    if (length * kParts >= 1) continue;
-    for (; next < laid + length; next += step) look(s.lo + (next - laid), step);
-    laid += length;
-  }
+  FocusedChord query{a, b, centre_ + at_unit_depth(pinhole.direction) * focal_distance_, pinhole.time};
+  if (draw.camera_moved != nullptr)
+    for (Vec3d* p : {&query.a, &query.b, &query.focus}) draw.camera_moved->multVecMatrix(Vec3d(*p), *p);
+  draw.geometry.nearest(query, seen, draw.counters);
+  looks_along(seen, draw.sampler.along_lens(draw.i, draw.n), looks);
+  for (const Look& look : looks) out.push_back({ray(pinhole, a + (b - a) * look.at), float(look.weight)});
 }
 
 }  // namespace penumbra

@@ -52,16 +52,17 @@ class BowTieWalk {
   BowTieWalk(const LineBvh& bvh, LowerEnvelope& envelope, QueryCounters& counters)
       : bvh_(bvh), envelope_(envelope), counters_(counters) {}
 
-  void run(const Vec3d& a, const Vec3d& b, const Vec3d& focus) {
+  void run(const Vec3d& a, const Vec3d& b, const Vec3d& focus, float time) {
     triangles(bvh_.world, make_bow_tie(a, b, focus), kNone);
     if (bvh_.instance_tree.nodes.empty()) return;
     walk(bvh_.instance_tree, make_bow_tie(a, b, focus), [&](uint32_t number) {
       // v and k are the same in every affine frame.
       const LineInstance& placed = bvh_.instances[number];
       Vec3d oa, ob, of;
-      placed.to_object.multVecMatrix(a, oa);
-      placed.to_object.multVecMatrix(b, ob);
-      placed.to_object.multVecMatrix(focus, of);
+      const Matrix& to_object = placed.to_object_at(time);
+      to_object.multVecMatrix(a, oa);
+      to_object.multVecMatrix(b, ob);
+      to_object.multVecMatrix(focus, of);
       triangles(bvh_.objects[placed.tree], make_bow_tie(oa, ob, of), number);
     });
   }
@@ -143,7 +144,11 @@ void nearest_along(const LineBvh& bvh, const FocusedChord& chord, std::vector<Se
   ++counters.line_queries;
   thread_local LowerEnvelope envelope;
   envelope.reset();
-  BowTieWalk(bvh, envelope, counters).run(chord.a, chord.b, chord.focus);
+  BowTieWalk(bvh, envelope, counters).run(chord.a, chord.b, chord.focus, chord.time);
+  seen_of(bvh, envelope, out);
+}
+
+void seen_of(const LineBvh& bvh, const LowerEnvelope& envelope, std::vector<SeenInterval>& out) {
   out.clear();
   for (const LowerEnvelope::Item& item : envelope.items()) {
     const PrimitiveId id = id_of(bvh, item.label);

@@ -11,6 +11,8 @@
 
 #include "proto/status.h"
 #include "worker/geometry/light_end.h"
+#include "worker/geometry/moving_instance.h"
+#include "worker/geometry/pose.h"
 
 namespace penumbra {
 namespace {
@@ -78,12 +80,13 @@ GeometryHandle make_instance(RTCDevice device, RTCScene object, const Matrix& to
 }
 
 /// Anything in (0, far) of the ray from x along d that the context's filter, if it has one, lets pass?
-bool ray_hits(RTCScene scene, RTCIntersectContext& context, const Vec3f& x, const Vec3f& d, float far) {
+bool ray_hits(RTCScene scene, RTCIntersectContext& context, const Vec3f& x, const Vec3f& d, float far,
+              float time) {
   RTCRay ray;
   // Strictly beyond x: Embree's robust test counts a surface at the near end itself, and at x it would be
   // the one that x was moved off, by as little as a denormal number where its plane passes through 0.
   ray.org_x = x.x, ray.org_y = x.y, ray.org_z = x.z, ray.tnear = std::numeric_limits<float>::min();
-  ray.dir_x = d.x, ray.dir_y = d.y, ray.dir_z = d.z, ray.time = 0;
+  ray.dir_x = d.x, ray.dir_y = d.y, ray.dir_z = d.z, ray.time = time;
   ray.tfar = std::nextafter(far, 0.f);
   ray.mask = ~0u, ray.id = 0, ray.flags = 0;
   rtcOccluded1(scene, &context, &ray);
@@ -93,20 +96,23 @@ bool ray_hits(RTCScene scene, RTCIntersectContext& context, const Vec3f& x, cons
 /// The scene's own triangles, for the filter that judges hits close to a light.
 struct Surfaces {
   std::vector<const TriangleMesh*> meshes;
-  std::vector<Matrix> to_world;  ///< of the instances
-  float extent = 0;              ///< Σ of the three extents of all of them
+  std::vector<InstanceInput> instances;
+  float extent = 0;  ///< Σ of the three extents of all of them
 
   const Vec3f& vertex(uint32_t mesh, uint32_t primitive, int corner) const {
     const TriangleMesh& m = *meshes[mesh];
     return m.positions[m.indices[3 * size_t{primitive} + static_cast<size_t>(corner)]];
   }
-  /// In the world.
-  void triangle(const PrimitiveId& id, Vec3d p[3]) const {
+  /// In the world, at a time.
+  void triangle(const PrimitiveId& id, float time, Vec3d p[3]) const {
     for (int c = 0; c < 3; ++c) {
       p[c] = Vec3d(vertex(id.mesh, id.primitive, c));
       const Vec3d in_object = p[c];
-      if (id.instance != kNone) to_world[id.instance].multVecMatrix(in_object, p[c]);
+      if (id.instance != kNone) to_world(instances[id.instance], time).multVecMatrix(in_object, p[c]);
     }
+  }
+  static const Matrix& to_world(const InstanceInput& instance, float time) {
+    return instance.motion ? pose_at(*instance.motion, time).to_world : instance.to_world;
   }
 };
 
@@ -153,7 +159,7 @@ void approach_filter(const RTCFilterFunctionNArguments* arguments) {
   const Surfaces& all = *context.surfaces;
   const auto instance = placed ? hit.instID[0] - static_cast<uint32_t>(all.meshes.size()) : kNone;
   Vec3d surface[3];
-  all.triangle({instance, hit.geomID, hit.primID}, surface);
+  all.triangle({instance, hit.geomID, hit.primID}, end.time, surface);
   if (!context.approach.hides(surface)) arguments->valid[0] = 0;
 }
 
@@ -161,9 +167,10 @@ bool approach_hits(RTCScene scene, const Surfaces& surfaces, const Vec3f& x, con
   ApproachContext context{{}, &surfaces, &y, LightApproach(x, y)};
   rtcInitIntersectContext(&context.embree);
   if (context.approach.alone())  // to just before the light, and no filter
-    return ray_hits(scene, context.embree, x, context.approach.way(), context.approach.before());
+    return ray_hits(scene, context.embree, x, context.approach.way(), context.approach.before(), y.time);
   context.embree.filter = approach_filter;
-  return ray_hits(scene, context.embree, x, context.approach.way(), context.approach.beyond(surfaces.extent));
+  return ray_hits(scene, context.embree, x, context.approach.way(), context.approach.beyond(surfaces.extent),
+                  y.time);
 }
 
 /// What a query around a light looks for.
@@ -184,8 +191,10 @@ bool find_neighbour(RTCPointQueryFunctionArguments* arguments) {
       (!placed && mesh == looking.own.mesh && primitive - looking.own.primitive < looking.primitives))
     return false;
   const auto meshes = static_cast<uint32_t>(looking.surfaces->meshes.size());
+  if (!placed && mesh >= meshes) return false;  // an instance that moves: its boxes are asked apart
   Vec3d p[3];
-  looking.surfaces->triangle({placed ? arguments->context->instID[0] - meshes : kNone, mesh, primitive}, p);
+  looking.surfaces->triangle({placed ? arguments->context->instID[0] - meshes : kNone, mesh, primitive}, 0,
+                             p);
   Imath::Box3d bounds;
   for (const Vec3d& corner : p) bounds.extendBy(corner);
   if (!bounds.intersects(looking.box)) return false;
@@ -196,8 +205,9 @@ bool find_neighbour(RTCPointQueryFunctionArguments* arguments) {
 
 /// Geometry numbers of a top scene: meshes first, then instances.
 struct Scenes {
-  Scene top;
+  std::vector<std::unique_ptr<MovingInstance>> moving;  // Embree keeps the addresses
   std::vector<Scene> objects;
+  Scene top;
 };
 
 }  // namespace
@@ -213,7 +223,19 @@ struct EmbreeScene::Parts {
   /// Scenes of the meshes that have a handle.
   Scenes assemble(const std::vector<GeometryHandle>& handles, std::span<const ObjectInput> objects,
                   std::span<const InstanceInput> instances) const;
+  /// Null for an object that moves and is empty.
+  GeometryHandle place(const InstanceInput& instance, Scenes& scenes) const;
 };
+
+GeometryHandle EmbreeScene::Parts::place(const InstanceInput& instance, Scenes& scenes) const {
+  const RTCScene object = scenes.objects[instance.object].get();
+  if (!instance.motion) return make_instance(device.get(), object, instance.to_world);
+  RTCBounds bounds;
+  rtcGetSceneBounds(object, &bounds);
+  if (!(bounds.lower_x <= bounds.upper_x)) return nullptr;
+  MovingInstance& moving = *scenes.moving.emplace_back(new MovingInstance{object, instance.motion, {}});
+  return GeometryHandle(make_moving_instance(device.get(), moving));
+}
 
 Scenes EmbreeScene::Parts::assemble(const std::vector<GeometryHandle>& handles,
                                     std::span<const ObjectInput> objects,
@@ -234,9 +256,8 @@ Scenes EmbreeScene::Parts::assemble(const std::vector<GeometryHandle>& handles,
     if (!in_object[m] && handles[m]) rtcAttachGeometryByID(scenes.top.get(), handles[m].get(), m);
   }
   for (uint32_t i = 0; i < instances.size(); ++i) {
-    const GeometryHandle instance =
-        make_instance(device.get(), scenes.objects[instances[i].object].get(), instances[i].to_world);
-    rtcAttachGeometryByID(scenes.top.get(), instance.get(), meshes + i);
+    const GeometryHandle instance = place(instances[i], scenes);
+    if (instance) rtcAttachGeometryByID(scenes.top.get(), instance.get(), meshes + i);
   }
   rtcCommitScene(scenes.top.get());
   return scenes;
@@ -255,7 +276,7 @@ absl::StatusOr<std::unique_ptr<EmbreeScene>> EmbreeScene::build(std::span<const 
   if (!parts.device) return absl::InternalError("Embree gives no device");
   parts.meshes = static_cast<uint32_t>(meshes.size());
   for (const MeshInput& mesh : meshes) parts.surfaces.meshes.push_back(mesh.mesh);
-  for (const InstanceInput& instance : instances) parts.surfaces.to_world.push_back(instance.to_world);
+  parts.surfaces.instances.assign(instances.begin(), instances.end());
 
   std::vector<GeometryHandle> opaque_and_alpha(meshes.size());
   std::vector<bool> tested(meshes.size(), false);
@@ -297,7 +318,7 @@ std::optional<Hit> EmbreeScene::intersect(const Ray& ray) const {
   query.ray.dir_x = ray.direction.x, query.ray.dir_y = ray.direction.y, query.ray.dir_z = ray.direction.z;
   query.ray.tnear = std::max(std::nextafter(ray.near, kInfinity), std::numeric_limits<float>::min());
   query.ray.tfar = ray.far;
-  query.ray.time = 0, query.ray.mask = ~0u, query.ray.id = 0, query.ray.flags = 0;
+  query.ray.time = ray.time, query.ray.mask = ~0u, query.ray.id = 0, query.ray.flags = 0;
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(parts_->all.top.get(), &context, &query);
@@ -309,6 +330,7 @@ std::optional<Hit> EmbreeScene::intersect(const Ray& ray) const {
   hit.distance = query.ray.tfar;
   hit.u = query.hit.u;
   hit.v = query.hit.v;
+  hit.time = ray.time;
   return hit;
 }
 
@@ -317,7 +339,7 @@ void EmbreeScene::beside(const Ray& ray, const Hit& first, const std::vector<boo
   out.clear();
   const Surfaces& all = parts_->surfaces;
   Vec3d p[3];
-  all.triangle(first.id, p);
+  all.triangle(first.id, ray.time, p);
   const Vec3d n = (p[1] - p[0]).cross(p[2] - p[0]).normalized(),
               way = Vec3d(ray.direction) * double{first.distance};
   const Vec3d end = Vec3d(ray.origin) + way;
@@ -331,25 +353,25 @@ void EmbreeScene::beside(const Ray& ray, const Hit& first, const std::vector<boo
   query.org_x = ray.origin.x, query.org_y = ray.origin.y, query.org_z = ray.origin.z;
   query.dir_x = ray.direction.x, query.dir_y = ray.direction.y, query.dir_z = ray.direction.z;
   query.tnear = first.distance * (1 - doubt), query.tfar = first.distance * (1 + doubt);
-  query.time = 0, query.mask = ~0u, query.id = 0, query.flags = 0;
+  query.time = ray.time, query.mask = ~0u, query.id = 0, query.flags = 0;
   rtcOccluded1(parts_->all.top.get(), &context.embree, &query);
 }
 
-bool EmbreeScene::occluded(const Vec3f& x, const Vec3f& y) const {
+bool EmbreeScene::occluded(const Vec3f& x, const Vec3f& y, float time) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  return ray_hits(parts_->all.top.get(), context, x, y - x, 1);
+  return ray_hits(parts_->all.top.get(), context, x, y - x, 1, time);
 }
 
 bool EmbreeScene::occluded(const Vec3f& x, const LightEnd& y) const {
   return approach_hits(parts_->all.top.get(), parts_->surfaces, x, y);
 }
 
-bool EmbreeScene::occluded_by_alpha(const Vec3f& x, const Vec3f& y) const {
+bool EmbreeScene::occluded_by_alpha(const Vec3f& x, const Vec3f& y, float time) const {
   if (!parts_->has_alpha) return false;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  return ray_hits(parts_->alpha_only.top.get(), context, x, y - x, 1);
+  return ray_hits(parts_->alpha_only.top.get(), context, x, y - x, 1, time);
 }
 
 bool EmbreeScene::occluded_by_alpha(const Vec3f& x, const LightEnd& y) const {
@@ -368,6 +390,13 @@ Imath::Box3f EmbreeScene::bounds(const PrimitiveId& first, uint32_t primitives) 
 }
 
 bool EmbreeScene::anything_meets(const Imath::Box3d& box, const PrimitiveId& own, uint32_t primitives) const {
+  for (const auto& moving : parts_->all.moving)
+    for (size_t i = 1; i < moving->boxes.size(); ++i) {
+      // Between two times it is between the two boxes.
+      Imath::Box3d both(moving->boxes[i - 1].lo, moving->boxes[i - 1].hi);
+      both.extendBy(Imath::Box3d(moving->boxes[i].lo, moving->boxes[i].hi));
+      if (box.intersects(both)) return true;
+    }
   const Vec3d centre = box.center();
   Neighbours neighbours{&parts_->surfaces, box, own, primitives};
   RTCPointQueryContext context;

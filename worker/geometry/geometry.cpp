@@ -11,6 +11,7 @@
 #include "worker/geometry/line_fan.h"
 #include "worker/geometry/line_query.h"
 #include "worker/geometry/shaft_list.h"
+#include "worker/geometry/swept_ray_walk.h"
 
 namespace penumbra {
 namespace {
@@ -102,9 +103,9 @@ void Geometry::beside(const Ray& ray, const Hit& first, const std::vector<bool>&
   parts_->embree->beside(ray, first, marked, out);
 }
 
-bool Geometry::occluded(const Vec3f& x, const Vec3f& y, QueryCounters& counters) const {
+bool Geometry::occluded(const Vec3f& x, const Vec3f& y, QueryCounters& counters, float time) const {
   ++counters.rays;
-  return parts_->embree->occluded(x, y);
+  return parts_->embree->occluded(x, y, time);
 }
 
 bool Geometry::occluded(const Vec3f& x, const LightEnd& y, QueryCounters& counters) const {
@@ -112,10 +113,10 @@ bool Geometry::occluded(const Vec3f& x, const LightEnd& y, QueryCounters& counte
   return parts_->embree->occluded(x, y);
 }
 
-bool Geometry::occluded_by_alpha(const Vec3f& x, const Vec3f& y, QueryCounters& counters) const {
+bool Geometry::occluded_by_alpha(const Vec3f& x, const Vec3f& y, QueryCounters& counters, float time) const {
   if (!parts_->embree->has_alpha()) return false;
   ++counters.rays;
-  return parts_->embree->occluded_by_alpha(x, y);
+  return parts_->embree->occluded_by_alpha(x, y, time);
 }
 
 bool Geometry::occluded_by_alpha(const Vec3f& x, const LightEnd& y, QueryCounters& counters) const {
@@ -177,6 +178,10 @@ bool Geometry::occluded(const Shaft& shaft, const Vec3f& x, const LightEnd& y,
 void Geometry::nearest(const FocusedChord& chord, std::vector<SeenInterval>& out,
                        QueryCounters& counters) const {
   nearest_along(parts_->lines(), chord, out, counters);
+}
+
+void Geometry::nearest(const RayInTime& ray, std::vector<SeenInterval>& out, QueryCounters& counters) const {
+  nearest_in_time(parts_->lines(), ray, out, counters);
 }
 
 Geometry::BuildTimes Geometry::build_times() const {

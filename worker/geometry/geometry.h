@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "scenes/animated_transform.h"
 #include "scenes/mesh.h"
 #include "worker/geometry/intervals.h"
 #include "worker/geometry/light_plane.h"
@@ -36,7 +37,8 @@ struct ObjectInput {
 /// Row-vector affine object-to-world of one object.
 struct InstanceInput {
   uint32_t object = 0;
-  Matrix to_world;
+  Matrix to_world;                                  ///< at time 0
+  std::shared_ptr<const AnimatedTransform> motion;  ///< null: it stands
 };
 
 /// Identity of a surface primitive. instance == kNone for what is placed directly in the world.
@@ -48,12 +50,14 @@ struct PrimitiveId {
 struct Ray {
   Vec3f origin, direction;  ///< direction need not be unit; distances are in its length
   float near = 0, far = 0;
+  float time = 0;  ///< of the shutter, in [0,1]: when moving instances are met
 };
 
 struct Hit {
   PrimitiveId id;
   float distance = 0;  ///< along the ray, in lengths of its direction
   float u = 0, v = 0;  ///< barycentric: p = (1-u-v) p0 + u p1 + v p2
+  float time = 0;      ///< the ray's
 };
 
 /// Where a ray meets a triangle.
@@ -70,6 +74,7 @@ struct LineQuery {
   uint32_t light_primitives =
       0;             ///< light.mesh never hide the chord: they are the light's own (flat) surface
   LightPlane plane;  ///< what is not before it (light_plane.h) hides nothing
+  float time = 0;    ///< as a ray's
 };
 
 /// A point of a flat light, where a shadow segment ends. Only what lies before the light's plane by more than
@@ -80,6 +85,7 @@ struct LightEnd {
   PrimitiveId light;  ///< as in LineQuery: the light's own primitives do not hide it
   uint32_t light_primitives = 0;
   bool crowded = true;  ///< LightPlace::crowded; false spares the judging of what is close to the light
+  float time = 0;       ///< as a ray's
 };
 
 /// How a flat light stands in the scene; found once per light.
@@ -92,9 +98,17 @@ struct LightPlace {
 /// A chord a→b of which every point sends one ray, through `focus` and on: a planar bow-tie.
 struct FocusedChord {
   Vec3d a, b, focus;
+  float time = 0;  ///< as a ray's
 };
 
-/// What the rays from v in [lo,hi] of a chord meet first; mesh kNone: nothing.
+/// One ray at all times of the shutter, carried along by the camera if that moves.
+struct RayInTime {
+  Vec3d origin, direction;                    ///< when the shutter opens
+  const AnimatedTransform* camera = nullptr;  ///< to the world; null: it stands
+  Matrix to_camera;                           ///< from the world, when the shutter opens
+};
+
+/// What the rays from v in [lo,hi] of a chord, or a ray at these times, meet first; mesh kNone: nothing.
 struct SeenInterval {
   double lo = 0, hi = 0;
   PrimitiveId id;
@@ -134,13 +148,13 @@ class Geometry {
               QueryCounters& counters) const;
 
   /// Anything strictly between x and y? Both already moved off their surfaces. Alpha-tested meshes count.
-  bool occluded(const Vec3f& x, const Vec3f& y, QueryCounters& counters) const;
+  bool occluded(const Vec3f& x, const Vec3f& y, QueryCounters& counters, float time = 0) const;
 
   /// The same for a y on a flat light: anything between x and the light's surface, but not that itself?
   bool occluded(const Vec3f& x, const LightEnd& y, QueryCounters& counters) const;
 
   /// Like occluded(), but only meshes that a line query cannot see (alpha-tested ones); false without any.
-  bool occluded_by_alpha(const Vec3f& x, const Vec3f& y, QueryCounters& counters) const;
+  bool occluded_by_alpha(const Vec3f& x, const Vec3f& y, QueryCounters& counters, float time = 0) const;
   bool occluded_by_alpha(const Vec3f& x, const LightEnd& y, QueryCounters& counters) const;
   bool has_alpha() const;
   LightPlace place_of(const PrimitiveId& light, uint32_t primitives, const Vec3d& normal) const;
@@ -165,6 +179,11 @@ class Geometry {
   /// still look. One interval of nothing for a chord seen end on from the focus.
   void nearest(const FocusedChord& chord, std::vector<SeenInterval>& out, QueryCounters& counters) const;
 
+  /// The same for one ray over the times [0,1] of the shutter. What turns is followed in steps
+  /// (swept_ray_walk.cpp): its intervals are off by the square of a step. One interval of nothing where
+  /// nothing that moves is met.
+  void nearest(const RayInTime& ray, std::vector<SeenInterval>& out, QueryCounters& counters) const;
+
   struct BuildTimes {
     double embree_seconds = 0, line_bvh_seconds = 0;
   };
@@ -172,7 +191,7 @@ class Geometry {
   BuildTimes build_times() const;
   /// Of the line BVH, per triangle.
   double line_bytes_per_triangle() const;
-  /// Bounds of everything; min > max if empty.
+  /// Bounds of everything at all times; min > max if empty.
   void bounds(Vec3f& lo, Vec3f& hi) const;
   /// Widest instruction set that line queries use here: "avx512", "avx2" or "scalar".
   const char* isa() const;

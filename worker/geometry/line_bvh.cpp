@@ -161,9 +161,8 @@ std::vector<bool> meshes_of_objects(size_t meshes, std::span<const ObjectInput> 
   return in_object;
 }
 
-/// World bounds of a placed object, from the corners of its own.
-Box placed_bounds(const LineTree& tree, const Matrix& to_world) {
-  Box box = empty_box();
+/// Bounds of an object in its own space.
+MovedBox own_bounds(const LineTree& tree) {
   const LineNode& root = tree.nodes[0];
   Vec3d lo(kInfinity, kInfinity, kInfinity), hi(-lo);
   for (int lane = 0; lane < kWidth; ++lane) {
@@ -173,14 +172,33 @@ Box placed_bounds(const LineTree& tree, const Matrix& to_world) {
       hi[k] = std::max(hi[k], tree.centre[k] + root.hi[k][lane]);
     }
   }
-  for (int corner = 0; corner < 8; ++corner) {
-    Vec3d p(corner & 1 ? hi.x : lo.x, corner & 2 ? hi.y : lo.y, corner & 4 ? hi.z : lo.z);
-    Vec3d w;
-    to_world.multVecMatrix(p, w);
-    for (int k = 0; k < 3; ++k) {
-      box.lo[k] = std::min(box.lo[k], std::nextafter(static_cast<float>(w[k]), -kInfinity));
-      box.hi[k] = std::max(box.hi[k], std::nextafter(static_cast<float>(w[k]), kInfinity));
+  return {lo, hi};
+}
+
+void extend_outwards(Box& box, const Vec3d& w) {
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = std::min(box.lo[k], std::nextafter(static_cast<float>(w[k]), -kInfinity));
+    box.hi[k] = std::max(box.hi[k], std::nextafter(static_cast<float>(w[k]), kInfinity));
+  }
+}
+
+/// World bounds of a placed object, from the corners of its own; of one that moves, at all times.
+Box placed_bounds(const LineTree& tree, const InstanceInput& instance) {
+  Box box = empty_box();
+  const MovedBox own = own_bounds(tree);
+  if (instance.motion) {
+    for (const MovedBox& moved : instance.motion->boxes(own)) {
+      extend_outwards(box, moved.lo);
+      extend_outwards(box, moved.hi);
     }
+    return box;
+  }
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3d w;
+    instance.to_world.multVecMatrix(Vec3d(corner & 1 ? own.hi.x : own.lo.x, corner & 2 ? own.hi.y : own.lo.y,
+                                          corner & 4 ? own.hi.z : own.lo.z),
+                                    w);
+    extend_outwards(box, w);
   }
   return box;
 }
@@ -192,10 +210,10 @@ absl::Status place_instances(LineBvh& bvh, std::span<const InstanceInput> instan
   for (size_t i = 0; i < instances.size(); ++i) {
     PENUMBRA_CHECK(instances[i].object < bvh.objects.size());
     const Matrix& m = instances[i].to_world;
-    bvh.instances[i] = {instances[i].object, m.inverse()};
+    bvh.instances[i] = {instances[i].object, m.inverse(), instances[i].motion};
     const LineTree& tree = bvh.objects[instances[i].object];
     if (tree.nodes.empty()) continue;
-    boxes.push_back(placed_bounds(tree, m));
+    boxes.push_back(placed_bounds(tree, instances[i]));
     numbers.push_back(static_cast<uint32_t>(i));
   }
   RETURN_IF_ERROR(build_tree(boxes, nullptr, builder, bvh.instance_tree));

@@ -9,6 +9,7 @@
 #include "worker/geometry/aligned.h"
 #include "worker/geometry/geometry.h"
 #include "worker/geometry/line_fan.h"
+#include "worker/geometry/pose.h"
 
 namespace penumbra {
 
@@ -47,7 +48,13 @@ struct LineTree {
 /// An object placed in the world.
 struct LineInstance {
   uint32_t tree = 0;  ///< into LineBvh::objects
-  Matrix to_object;   ///< affine, row vectors
+  Matrix to_object;   ///< affine, row vectors; of one that moves, at time 0
+  std::shared_ptr<const AnimatedTransform> motion;
+
+  /// Valid until this thread asks for that of another instance.
+  const Matrix& to_object_at(float time) const {
+    return motion ? pose_at(*motion, time).to_object : to_object;
+  }
 };
 
 struct LineBvh {

@@ -51,10 +51,11 @@ class Walk {
     leaves(bvh_.instance_tree, fan, [&](uint32_t instance) {
       const LineInstance& placed = bvh_.instances[instance];
       Vec3d ox, oa, ob;
-      placed.to_object.multVecMatrix(x, ox);
-      placed.to_object.multDirMatrix(a, oa);
-      placed.to_object.multDirMatrix(b, ob);
-      tree(bvh_.objects[placed.tree], ox, oa, ob, placed_plane(plane, a, b, placed.to_object),
+      const Matrix& to_object = placed.to_object_at(query_.time);
+      to_object.multVecMatrix(x, ox);
+      to_object.multDirMatrix(a, oa);
+      to_object.multDirMatrix(b, ob);
+      tree(bvh_.objects[placed.tree], ox, oa, ob, placed_plane(plane, a, b, to_object),
            excluded_in(bvh_, query_, instance));
     });
   }

@@ -158,10 +158,11 @@ class LineWalk {
     const LineInstance& placed = bvh().instances[instance];
     const LineTree& tree = bvh().objects[placed.tree];
     Vec3d x, a, b;
-    placed.to_object.multVecMatrix(x_, x);
-    placed.to_object.multDirMatrix(a_, a);
-    placed.to_object.multDirMatrix(b_, b);
-    const LineFan fan = make_fan(x, a, b, tree.reach(x), placed_plane(plane_, a_, b_, placed.to_object));
+    const Matrix& to_object = placed.to_object_at(query_->time);
+    to_object.multVecMatrix(x_, x);
+    to_object.multDirMatrix(a_, a);
+    to_object.multDirMatrix(b_, b);
+    const LineFan fan = make_fan(x, a, b, tree.reach(x), placed_plane(plane_, a_, b_, to_object));
     if (fan.degenerate) return false;
     FanBlock fan_block;
     fan_block.set_up(fan);

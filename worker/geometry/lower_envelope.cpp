@@ -40,7 +40,11 @@ void LowerEnvelope::reset() {
 
 void LowerEnvelope::append(double lo, double hi, const CutPiece& piece, PieceLabel label) {
   if (!(lo < hi)) return;
-  if (!next_.empty() && next_.back().label == label && next_.back().piece.beyond == piece.beyond) {
+  // One triangle may have several pieces.
+  const auto same = [&](const CutPiece& last) {
+    return last.beyond == piece.beyond && last.start == piece.start && last.slope == piece.slope;
+  };
+  if (!next_.empty() && next_.back().label == label && same(next_.back().piece)) {
     next_.back().hi = hi;
     return;
   }

@@ -19,6 +19,7 @@ struct SurfacePoint {
   float dudx = 0, dvdx = 0, dudy = 0, dvdy = 0;
   Vec3f wo;  ///< unit, towards the viewer
   PrimitiveId id;
+  float time = 0;  ///< of the shutter, in [0,1]: when the point is there
 
   /// p moved off the surface to the side of `towards`, past its error bound (pbrt-v3 OffsetRayOrigin).
   Vec3f offset(const Vec3f& towards) const;

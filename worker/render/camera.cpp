@@ -55,7 +55,7 @@ Vec3f Camera::direction_at(const Vec2d& pixel) const {
 }
 
 CameraRay Camera::ray(const Vec2d& pixel) const {
-  return {Vec3f(origin_), direction_at(pixel), direction_at(pixel + Vec2d(1, 0)), direction_at(pixel + Vec2d(0, 1))};
+  return {Vec3f(origin_), direction_at(pixel), direction_at(pixel + Vec2d(1, 0)), direction_at(pixel + Vec2d(0, 1)), 0};
 }
 
 }  // namespace penumbra

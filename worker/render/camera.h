@@ -10,6 +10,7 @@ namespace penumbra {
 struct CameraRay {
   Vec3f origin, direction;        ///< direction unit
   Vec3f direction_dx, direction_dy;  ///< unit; origin shared (the pinhole, or a point of a lens)
+  float time = 0;                    ///< of the shutter, in [0,1]
 };
 
 class Camera {

@@ -23,6 +23,9 @@ struct CameraDraw {
   const Geometry& geometry;
   QueryCounters& counters;
   int i = 0, n = 1;
+  /// What has carried the camera along with its rays at the pinhole ray's time, row vectors; null: nothing. The
+  /// stage makes rays for where it was.
+  const Matrix* camera_moved = nullptr;
 };
 
 class CameraStage {

@@ -148,6 +148,7 @@ void MediumLines::find_visible(const Apex& apex, const Ray& ray, double t0, doub
   query.x = off_the_light(apex.p, apex.n, Vec3d(ray.origin) + Vec3d(ray.direction) * t1);
   query.a = ray.origin + ray.direction * float(t0);
   query.b = ray.origin + ray.direction * float(t1);
+  query.time = ray.time;
   if (apex.light < lights.area.size()) {
     const AreaEmitter& emitter = lights.area[apex.light];
     query.light = {kNone, emitter.mesh, emitter.first_primitive};
@@ -209,7 +210,7 @@ Rgb MediumLines::along(const Apex& apex, const Ray& ray, const Start& start, siz
   f *= in.phase->scatter(-ray.direction, wi) * walk_.scattering(part, t) *
        walk_.transmittance(x, wi, distance);
   if (scene_.geometry->has_alpha() &&
-      scene_.geometry->occluded_by_alpha(x, off_the_light(apex.p, apex.n, Vec3d(x)), counters_))
+      scene_.geometry->occluded_by_alpha(x, off_the_light(apex.p, apex.n, Vec3d(x)), counters_, ray.time))
     return Rgb(0);
   f *= float(apex.weight / density);
   if (arrivals_ != nullptr) {

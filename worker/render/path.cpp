@@ -25,7 +25,7 @@ float largest(const Rgb& c) {
 }
 
 Ray first_ray(const CameraRay& ray) {
-  return {ray.origin, ray.direction, 0, std::numeric_limits<float>::infinity()};
+  return {ray.origin, ray.direction, 0, std::numeric_limits<float>::infinity(), ray.time};
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ Rgb PathTracer::radiance(const CameraRay& camera_ray, const PassSampler& sampler
     if (depth + 1 >= max_depth_ || bsdf.specular_count() == 0) return sum;
     Vec3f direction;
     if (!bounce(point, sampler, depth, direction, throughput)) return sum;
-    ray = {surface.offset(direction), direction, 0, std::numeric_limits<float>::infinity()};
+    ray = {surface.offset(direction), direction, 0, std::numeric_limits<float>::infinity(), camera_ray.time};
     if (walk_) walk_->leave(direction);
   }
 }
@@ -117,7 +117,7 @@ Rgb PathTracer::lit(const std::vector<ScatterVertex>& vertices, const Ray& ray, 
   Rgb sum(0);
   for (const ScatterVertex& vertex : vertices) {
     walk_->stand_in(vertex.medium);
-    const ShadingPoint point(vertex.p, -ray.direction, *vertex.phase);
+    const ShadingPoint point(vertex.p, -ray.direction, *vertex.phase, ray.time);
     if (arrivals_)
       arrivals_->stand_at(length_ + (Vec3d(vertex.p) - Vec3d(ray.origin)).length(),
                           throughput_ * vertex.weight);

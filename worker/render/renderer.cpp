@@ -10,6 +10,8 @@
 #include "scenes/leave_out.h"
 #include "scenes/needs.h"
 #include "scenes/parser.h"
+#include "scenes/standing.h"
+#include "worker/render/camera.h"
 #include "worker/render/render_space.h"
 #include "worker/render/scene_builder.h"
 #include "worker/strategies/strategy.h"
@@ -52,8 +54,16 @@ absl::StatusOr<ScenePtr> build_scene(const SceneDescription& description, const 
   report.warnings = description.warnings;
   for (std::string& warning : unsupported(description)) report.warnings.push_back(std::move(warning));
   ASSIGN_OR_RETURN(const std::optional<Vec3d> origin, distant_origin(description, files));
-  const SceneDescription moved = origin ? moved_to(*origin, description) : SceneDescription();
-  RenderSceneBuilder builder(origin ? moved : description, files, options, report.warnings);
+  const SceneDescription near = origin ? moved_to(*origin, description) : SceneDescription();
+  const SceneDescription& placed = origin ? near : description;
+  RETURN_IF_ERROR(Camera::build(placed, 1, 1).status());
+  ASSIGN_OR_RETURN(Effects effects, build_effects(placed));
+  SceneDescription still;
+  const bool moves = anything_moves(placed);
+  if (moves) {
+    ASSIGN_OR_RETURN(still, standing(placed, effects.motion));
+  }
+  RenderSceneBuilder builder(moves ? still : placed, std::move(effects), files, options, report.warnings);
   ASSIGN_OR_RETURN(ScenePtr scene, builder.build());
   if (options.strict && !report.warnings.empty()) return invalid_input("--strict: {}", report.warnings.front());
   report.build_seconds = seconds_since(start);
@@ -75,7 +85,11 @@ std::vector<std::string> substitutions(const Scene& scene, const Mix& mix) {
   std::vector<std::string> out;
   if (mix.medium == MediumSampling::kLine && !scene.effects.media)
     out.push_back("medium=line without media: nothing to do");
-  if (mix.lens == LensSampling::kLine && !scene.effects.camera) out.push_back("lens=line on a pinhole: nothing to do");
+  if (mix.lens == LensSampling::kLine && !scene.effects.lens) out.push_back("lens=line on a pinhole: nothing to do");
+  if (mix.motion == MotionSampling::kLine && !scene.effects.motion)
+    out.push_back("motion=line where nothing moves: nothing to do");
+  else if (mix.motion == MotionSampling::kLine && mix.lens == LensSampling::kLine && scene.effects.lens)
+    out.push_back("motion=line beside lens=line: chords of the lens, at points in time");
   for (const auto& [key, n] : counts)
     out.push_back(fmt::format("{} on {} {} light{}: {}", std::get<0>(key), n, std::get<1>(key), n == 1 ? "" : "s",
                               std::get<2>(key)));

@@ -25,9 +25,10 @@ struct SceneMesh {
 };
 
 struct SceneInstance {
-  Matrix to_world;
+  Matrix to_world;            ///< at time 0
   Imath::M33d normals;        ///< inverse transpose of the linear part, for row vectors
   bool swaps_handedness = false;
+  std::shared_ptr<const AnimatedTransform> motion;  ///< null: it stands
 };
 
 class Scene {

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "proto/status.h"
-#include "worker/render/camera.h"
 
 namespace penumbra {
 
@@ -49,8 +48,7 @@ absl::StatusOr<ScenePtr> RenderSceneBuilder::build() {
   scene_->description.camera = description_.camera;
   scene_->description.camera_placement = description_.camera_placement;
   scene_->description.materials = description_.materials;
-  RETURN_IF_ERROR(Camera::build(description_, 1, 1).status());
-  ASSIGN_OR_RETURN(scene_->effects, build_effects(description_));
+  scene_->effects = std::move(effects_);
   ASSIGN_OR_RETURN(scene_->materials, Materials::build(description_, files_, options_.strict, warnings_));
   ASSIGN_OR_RETURN(scene_->filter, Filter::build(description_, warnings_));
   used_textures_ = scene_->materials.used_textures();
@@ -68,19 +66,37 @@ absl::StatusOr<ScenePtr> RenderSceneBuilder::build() {
   return std::move(scene_);
 }
 
+/// As in pbrt a shape that moves is an object of its own, placed by an instance that moves; neighbours of the
+/// same motion are one object.
 absl::Status RenderSceneBuilder::place_shapes() {
-  for (const ShapeEntity& shape : description_.shapes) RETURN_IF_ERROR(place_shape(shape, false));
+  const std::vector<ShapeEntity>& shapes = description_.shapes;
+  const auto together = [](const Placement& a, const Placement& b) { return a.start == b.start && a.end == b.end; };
+  for (size_t i = 0; i < shapes.size();) {
+    const Placement& placement = shapes[i].placement;
+    if (!placement.moving()) {
+      RETURN_IF_ERROR(place_shape(shapes[i], placement.start, false));
+      ++i;
+      continue;
+    }
+    const uint32_t first = uint32_t(scene_->meshes.size());
+    const FileLoc loc = shapes[i].loc;
+    for (; i < shapes.size() && together(shapes[i].placement, placement); ++i)
+      RETURN_IF_ERROR(place_shape(shapes[i], Matrix(), true));
+    objects_.push_back({first, uint32_t(scene_->meshes.size())});
+    RETURN_IF_ERROR(place_object(uint32_t(objects_.size() - 1), placement, loc));
+  }
   return absl::OkStatus();
 }
 
-absl::Status RenderSceneBuilder::place_shape(const ShapeEntity& shape, bool in_object) {
+absl::Status RenderSceneBuilder::place_shape(const ShapeEntity& shape, const Matrix& to_parent,
+                                             bool in_object) {
   if (!has_mesh(shape)) return absl::OkStatus();  // named by unsupported()
   ASSIGN_OR_RETURN(TriangleMesh mesh, make_mesh(shape, description_, files_, warnings_));
   if (mesh.indices.empty()) return absl::OkStatus();
   SceneMesh placed;
   placed.material = shape.material;
-  placed.flip = shape.reverse_orientation != swaps_handedness(shape.placement.start);
-  transform(mesh, shape.placement.start, shape.reverse_orientation);
+  placed.flip = shape.reverse_orientation != swaps_handedness(to_parent);
+  transform(mesh, to_parent, shape.reverse_orientation);
   placed.mesh = std::move(mesh);
 
   FloatValue alpha = float_value(shape.params, "alpha", 1);
@@ -113,19 +129,32 @@ absl::Status RenderSceneBuilder::place_objects() {
     uint32_t& object = object_of[size_t(instance.object)];
     if (object == kNone) {
       const uint32_t first = uint32_t(scene_->meshes.size());
-      for (const ShapeEntity& shape : entity.shapes) RETURN_IF_ERROR(place_shape(shape, true));
+      for (const ShapeEntity& shape : entity.shapes)
+        RETURN_IF_ERROR(place_shape(shape, shape.placement.start, true));
       object = uint32_t(objects_.size());
       objects_.push_back({first, uint32_t(scene_->meshes.size())});
     }
-    if (objects_[object].first_mesh == objects_[object].last_mesh) continue;
-    const Matrix& to_world = instance.placement.start;
-    if (to_world.determinant() == 0)
-      return invalid_input("{}: the instance's transform is singular", description_.place(instance.loc));
-    placed_.push_back({object, to_world});
-    scene_->instances.push_back({to_world, normal_matrix(to_world), swaps_handedness(to_world)});
-    for (uint32_t m = objects_[object].first_mesh; m < objects_[object].last_mesh; ++m)
-      scene_->triangles += int64_t(scene_->meshes[m].mesh.triangles());
+    RETURN_IF_ERROR(place_object(object, instance.placement, instance.loc));
   }
+  return absl::OkStatus();
+}
+
+absl::Status RenderSceneBuilder::place_object(uint32_t object, const Placement& placement, FileLoc loc) {
+  if (objects_[object].first_mesh == objects_[object].last_mesh) return absl::OkStatus();
+  std::shared_ptr<const AnimatedTransform> motion;
+  Matrix to_world = placement.start;
+  if (placement.moving()) {
+    const auto moves = AnimatedTransform::between(placement.start, placement.end, shutter_of(description_));
+    PENUMBRA_CHECK(moves);  // standing() has refused what cannot move
+    motion = std::make_shared<const AnimatedTransform>(*moves);
+    to_world = motion->at(0);
+  }
+  if (to_world.determinant() == 0)
+    return invalid_input("{}: the instance's transform is singular", description_.place(loc));
+  placed_.push_back({object, to_world, motion});
+  scene_->instances.push_back({to_world, normal_matrix(to_world), swaps_handedness(to_world), motion});
+  for (uint32_t m = objects_[object].first_mesh; m < objects_[object].last_mesh; ++m)
+    scene_->triangles += int64_t(scene_->meshes[m].mesh.triangles());
   return absl::OkStatus();
 }
 

@@ -8,22 +8,30 @@ namespace penumbra {
 /// The steps of build_scene(), in order.
 class RenderSceneBuilder {
  public:
-  RenderSceneBuilder(const SceneDescription& description, const SceneFiles& files, const LoadOptions& options,
-               std::vector<std::string>& warnings)
-      : description_(description), files_(files), options_(options), warnings_(warnings) {}
+  /// Shapes and instances of the description that have two placements move.
+  RenderSceneBuilder(const SceneDescription& description, Effects effects, const SceneFiles& files,
+                     const LoadOptions& options, std::vector<std::string>& warnings)
+      : description_(description),
+        effects_(std::move(effects)),
+        files_(files),
+        options_(options),
+        warnings_(warnings) {}
 
   absl::StatusOr<ScenePtr> build();
 
  private:
   absl::Status place_shapes();
   absl::Status place_objects();
-  absl::Status place_shape(const ShapeEntity& shape, bool in_object);
+  /// `to_parent`: to the world, or to the space of the object that owns it.
+  absl::Status place_shape(const ShapeEntity& shape, const Matrix& to_parent, bool in_object);
+  absl::Status place_object(uint32_t object, const Placement& placement, FileLoc loc);
   absl::Status build_textures();
   absl::Status build_geometry();
   absl::Status add_lights();
   AlphaTest alpha_test(size_t mesh) const;
 
   const SceneDescription& description_;
+  Effects effects_;
   const SceneFiles& files_;
   const LoadOptions& options_;
   std::vector<std::string>& warnings_;

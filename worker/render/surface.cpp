@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "worker/geometry/pose.h"
 #include "worker/sampling/warp.h"
 
 namespace penumbra {
@@ -50,9 +51,21 @@ bool partials(const Triangle& t, const Vec3f& d02, const Vec3f& d12, Vec3f& du, 
   return std::isfinite(du.length2()) && std::isfinite(dv.length2());
 }
 
+/// An instance at the time of a hit.
+struct Placed {
+  const Matrix& to_world;
+  const Imath::M33d& normals;
+
+  static Placed at(const SceneInstance& instance, float time) {
+    if (!instance.motion) return {instance.to_world, instance.normals};
+    const Pose& pose = pose_at(*instance.motion, time);
+    return {pose.to_world, pose.normals};
+  }
+};
+
 /// Carries a point of object space and its error bound to the world (pbrt-v3 §3.9.4).
-void to_world(SurfacePoint& point, const SceneInstance& instance) {
-  const Matrix& m = instance.to_world;
+void to_world(SurfacePoint& point, const Placed& placed) {
+  const Matrix& m = placed.to_world;
   Vec3d world;
   m.multVecMatrix(Vec3d(point.p), world);
   Vec3f error;
@@ -71,7 +84,7 @@ void to_world(SurfacePoint& point, const SceneInstance& instance) {
     m.multDirMatrix(Vec3d(*v), out);
     *v = Vec3f(out);
   }
-  for (Vec3f* n : {&point.dndu, &point.dndv}) *n = Vec3f(Vec3d(*n) * instance.normals);
+  for (Vec3f* n : {&point.dndu, &point.dndv}) *n = Vec3f(Vec3d(*n) * placed.normals);
 }
 
 void set_footprint(SurfacePoint& point, const CameraRay& ray) {
@@ -122,6 +135,7 @@ SurfacePoint surface_at(const Scene& scene, const Hit& hit, const Vec3f& directi
 
   SurfacePoint point;
   point.id = hit.id;
+  point.time = hit.time;
   point.dndu = point.dndv = point.dpdx = point.dpdy = Vec3f(0);
   point.wo = -direction;
   point.p = t.p0 * b0 + t.p1 * b1 + t.p2 * b2;
@@ -148,9 +162,10 @@ SurfacePoint surface_at(const Scene& scene, const Hit& hit, const Vec3f& directi
     }
   }
   if (instance) {
-    to_world(point, *instance);
-    ng = (ng * instance->normals).normalized();
-    ns = (ns * instance->normals).normalized();
+    const Placed placed = Placed::at(*instance, hit.time);
+    to_world(point, placed);
+    ng = (ng * placed.normals).normalized();
+    ns = (ns * placed.normals).normalized();
   }
   point.ng = Vec3f(ng);
   point.ns = Vec3f(ns);

@@ -92,8 +92,8 @@ PassSampler PassSampler::branch(int i) const {
   if (i > 0) own.key_ = stream_key(key_, Use::kBranch, static_cast<uint64_t>(i));
   return own;
 }
-double PassSampler::time() const {
-  return segment(stream_key(key_, Use::kTime), 0, 1);
+double PassSampler::time(int i, int n) const {
+  return segment(stream_key(key_, Use::kTime, static_cast<uint32_t>(n)), i, n);
 }
 
 namespace {

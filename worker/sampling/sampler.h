@@ -27,7 +27,7 @@ class PassSampler {
   PassSampler(SamplerKind kind, uint64_t seed, uint32_t mix, TaskKind stage, uint32_t pixel, int64_t pass,
               int64_t group);
 
-  /// Position in the pixel's filter, time: u in [0,1)².
+  /// Position in the pixel's filter: u in [0,1)².
   Vec2d film() const;
   /// Position i of n for what is looked at more often than the rest: stratified together, and over the passes
   /// of the group.
@@ -36,7 +36,8 @@ class PassSampler {
   Vec2d lens(int i, int n) const;
   /// A third number for the same ray: where on the chord.
   double along_lens(int i, int n) const;
-  double time() const;
+  /// When, for the same ray: u in [0,1) of the shutter.
+  double time(int i, int n) const;
   /// Where a pass sends several rays: the numbers of all that happens along ray i. Those of ray 0 are this
   /// sampler's own.
   PassSampler branch(int i) const;

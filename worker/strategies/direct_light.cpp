@@ -92,7 +92,7 @@ void DirectLight::trace_bsdf(const ShadingPoint& point, const PassSampler& sampl
           point.scattering.sample(point.wo, u, sampler.choice(depth, kBsdfStream, int(s), i, slot.count));
       if (!scattered || !(scattered->pdf > 0)) continue;
       const Vec3f& wi = scattered->wi;
-      const Ray ray{point.origin(wi), wi, 0, std::numeric_limits<float>::infinity()};
+      const Ray ray{point.origin(wi), wi, 0, std::numeric_limits<float>::infinity(), point.time};
       BsdfHit found;
       found.slot = s;
       found.sample.wi = wi;
@@ -290,9 +290,9 @@ void DirectLight::densities(const Task& task, Candidate& c, double* row) {
   if (c.sight == Sight::kUnknown) {
     if (!clear(task, c.sample)) c.f = Rgb(0);
   } else if (c.sight == Sight::kNoOpaque && scene_.geometry.has_alpha() && !is_black(c.f)) {
-    const LightEnd end = end_on_light(task.view.area(), c.sample.at.p, c.sample.at.n);
-    if (scene_.geometry.occluded_by_alpha(task.view.point().origin(c.sample.wi), end, counters_))
-      c.f = Rgb(0);
+    const ShadingPoint& point = task.view.point();
+    const LightEnd end = end_on_light(task.view.area(), c.sample.at.p, c.sample.at.n, point.time);
+    if (scene_.geometry.occluded_by_alpha(point.origin(c.sample.wi), end, counters_)) c.f = Rgb(0);
   }
 }
 
@@ -325,12 +325,13 @@ bool DirectLight::may_reach(const Task& task) {
 
 bool DirectLight::clear(const Task& task, const LightSample& sample) {
   const Vec3f& origin = task.view.point().origin(sample.wi);
+  const float time = task.view.point().time;
   if (!task.view.is_area())
-    return !scene_.geometry.occluded(origin, origin + sample.wi * scene_.lights.reach(), counters_);
+    return !scene_.geometry.occluded(origin, origin + sample.wi * scene_.lights.reach(), counters_, time);
   if (const VisibleRegion* region = task.view.region(); region != nullptr && !region->holds(sample.at.p))
     return false;
   if (task.view.area().flat) {
-    const LightEnd end = end_on_light(task.view.area(), sample.at.p, sample.at.n);
+    const LightEnd end = end_on_light(task.view.area(), sample.at.p, sample.at.n, time);
     if (task.view.region() != nullptr) return !scene_.geometry.occluded_by_alpha(origin, end, counters_);
     const Shaft* shaft = sight_.for_rays(origin);
     return !(shaft != nullptr ? scene_.geometry.occluded(*shaft, origin, end, counters_)
@@ -338,7 +339,7 @@ bool DirectLight::clear(const Task& task, const LightSample& sample) {
   }
   // A curved light is traced as a tessellation that the sampled point is not on: it is visible if the
   // light is the first thing met.
-  const Ray ray{origin, sample.wi, 0, std::numeric_limits<float>::infinity()};
+  const Ray ray{origin, sample.wi, 0, std::numeric_limits<float>::infinity(), time};
   const auto hit = scene_.geometry.intersect(ray, counters_);
   return hit && hit->id.instance == kNone && hit->id.mesh == task.view.area().mesh;
 }
@@ -392,7 +393,8 @@ Rgb DirectLight::delta(const ShadingPoint& point, const DeltaEmitter& emitter, f
   const DeltaLight light = delta_light_at(emitter, point.above, scene_.lights.reach());
   if (is_black(light.irradiance)) return Rgb(0);
   Rgb f = point.scatter(light.wi) * light.irradiance;
-  if (is_black(f) || scene_.geometry.occluded(point.origin(light.wi), light.end, counters_)) return Rgb(0);
+  if (is_black(f) || scene_.geometry.occluded(point.origin(light.wi), light.end, counters_, point.time))
+    return Rgb(0);
   const double distance = std::holds_alternative<DistantEmitter>(emitter)
                               ? std::numeric_limits<double>::infinity()
                               : double((light.end - point.above).length());

@@ -19,7 +19,8 @@ std::optional<LightHit> unhidden(const Geometry& geometry, const LightSet& light
     const uint32_t emitter = lights.emitter_at(m.id, m.p, ray.direction);
     if (emitter == kNone || !lights.area[emitter].crowded) continue;
     const AreaEmitter& light = lights.area[emitter];
-    if (!geometry.occluded(ray.origin, end_on_light(light, m.p, emission_normal(light.shape, m.p)), counters))
+    const LightEnd end = end_on_light(light, m.p, emission_normal(light.shape, m.p), ray.time);
+    if (!geometry.occluded(ray.origin, end, counters))
       return LightHit{emitter, m.p};
   }
   return std::nullopt;
@@ -27,9 +28,9 @@ std::optional<LightHit> unhidden(const Geometry& geometry, const LightSet& light
 
 }  // namespace
 
-LightEnd end_on_light(const AreaEmitter& light, const Vec3d& p, const Vec3d& normal) {
+LightEnd end_on_light(const AreaEmitter& light, const Vec3d& p, const Vec3d& normal, float time) {
   const PrimitiveId id{kNone, light.mesh, light.first_primitive};
-  return {p, {normal, light.rounding}, id, light.primitives, light.crowded};
+  return {p, {normal, light.rounding}, id, light.primitives, light.crowded, time};
 }
 
 std::optional<LightHit> light_met(const Geometry& geometry, const LightSet& lights, const Ray& ray,

@@ -12,8 +12,8 @@ struct LightHit {
   Vec3d p;                   ///< where it was met
 };
 
-/// Where a shadow segment to the point p of a flat light ends.
-LightEnd end_on_light(const AreaEmitter& light, const Vec3d& p, const Vec3d& normal);
+/// Where a shadow segment to the point p of a flat light ends, at a time of the shutter.
+LightEnd end_on_light(const AreaEmitter& light, const Vec3d& p, const Vec3d& normal, float time);
 
 /// The area light that radiates along the ray, `first` being the nearest surface that the ray met. Where a
 /// flat light is so close to other surfaces that the ray's distances do not say which is first, that is

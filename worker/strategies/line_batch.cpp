@@ -15,13 +15,13 @@ size_t LineBatch::add(const LightLine& line, const ShadingPoint& point, const Ar
   lines_[handle] = {line};
   if (!(line.scale > 0)) return handle;
   const Vec3d x(point.above), normal(point.normal);
-  add_part(above_, handle, clip_to_horizon(line, x, normal), point.above, emitter);
-  if (point.transmits) add_part(below_, handle, clip_to_horizon(line, x, -normal), point.below, emitter);
+  add_part(above_, handle, clip_to_horizon(line, x, normal), point, point.above, emitter);
+  if (point.transmits) add_part(below_, handle, clip_to_horizon(line, x, -normal), point, point.below, emitter);
   return handle;
 }
 
-void LineBatch::add_part(Side& side, size_t line, const Interval& range, const Vec3f& x,
-                         const AreaEmitter& emitter) {
+void LineBatch::add_part(Side& side, size_t line, const Interval& range, const ShadingPoint& point,
+                         const Vec3f& x, const AreaEmitter& emitter) {
   if (!(range.lo < range.hi)) return;
   const LightLine& l = lines_[line].line;
   const Vec3d ab = l.b - l.a;
@@ -32,6 +32,7 @@ void LineBatch::add_part(Side& side, size_t line, const Interval& range, const V
   query.light = {kNone, emitter.mesh, emitter.first_primitive};
   query.light_primitives = emitter.primitives;
   query.plane = {l.n, emitter.rounding};
+  query.time = point.time;
   side.queries.push_back(query);
   side.parts.push_back({line, range});
 }

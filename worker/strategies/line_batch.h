@@ -47,7 +47,8 @@ class LineBatch {
     void clear() { queries.clear(); parts.clear(); }
   };
 
-  void add_part(Side& side, size_t line, const Interval& range, const Vec3f& x, const AreaEmitter& emitter);
+  void add_part(Side& side, size_t line, const Interval& range, const ShadingPoint& point, const Vec3f& x,
+                const AreaEmitter& emitter);
   void gather(size_t line, const Side& side, size_t& next);
 
   std::vector<Line> lines_;  ///< grows only; count_ of them are in use

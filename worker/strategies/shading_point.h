@@ -15,12 +15,19 @@ struct ShadingPoint {
         wo(surface.wo),
         normal(surface.ng.dot(wo) < 0 ? -surface.ng : surface.ng),
         above(surface.offset(normal)),
-        transmits(surface_bsdf.transmits()) {
+        transmits(surface_bsdf.transmits()),
+        time(surface.time) {
     below = transmits ? surface.offset(-normal) : above;
   }
   /// In a medium, away from every surface: no horizon.
-  ShadingPoint(const Vec3f& p, const Vec3f& to_viewer, const Scattering& phase_function)
-      : scattering(phase_function), wo(to_viewer), normal(0), above(p), below(p), transmits(false) {}
+  ShadingPoint(const Vec3f& p, const Vec3f& to_viewer, const Scattering& phase_function, float when = 0)
+      : scattering(phase_function),
+        wo(to_viewer),
+        normal(0),
+        above(p),
+        below(p),
+        transmits(false),
+        time(when) {}
 
   const Scattering& scattering;
   const Bsdf* bsdf = nullptr;  ///< null in a medium
@@ -29,6 +36,7 @@ struct ShadingPoint {
   Vec3f above;   ///< the surface point moved off the surface to the viewer's side
   Vec3f below;   ///< … to the other side; equal to `above` where nothing is transmitted
   bool transmits;
+  float time;  ///< of the shutter, in [0,1]: when light arrives
 
   /// Does light from one half of the directions not count?
   bool has_horizon() const { return bsdf != nullptr && !transmits; }

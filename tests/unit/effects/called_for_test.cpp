@@ -18,6 +18,7 @@ TEST(CalledFor, PlainScenesHaveNoStage) {
     ASSERT_TRUE(scene) << name;
     EXPECT_EQ(scene->effects.camera, nullptr) << name;
     EXPECT_EQ(scene->effects.media, nullptr) << name;
+    EXPECT_FALSE(scene->effects.motion) << name;
   }
   const ScenePtr scene = test::load(kGallery + "lens.pbrt");
   ASSERT_TRUE(scene);
@@ -26,6 +27,11 @@ TEST(CalledFor, PlainScenesHaveNoStage) {
   ASSERT_TRUE(fog);
   EXPECT_NE(fog->effects.media, nullptr);
   EXPECT_EQ(fog->effects.camera, nullptr);
+  const ScenePtr motion = test::load(kGallery + "motion.pbrt");
+  ASSERT_TRUE(motion);
+  EXPECT_TRUE(motion->effects.motion);
+  EXPECT_NE(motion->effects.camera, nullptr);
+  EXPECT_FALSE(motion->effects.lens);
 }
 
 /// A stage that passes the pinhole's ray on, and counts.

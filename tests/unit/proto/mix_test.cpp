@@ -18,6 +18,15 @@ TEST(Mix, ALensOfLinesStandsAfterTheCombination) {
   EXPECT_EQ(file_stem(label(*mix)), "bsdf-2+sa-2_balance_lens-line");
 }
 
+TEST(Mix, MotionByLinesStandsBesideTheOtherEffects) {
+  const auto mix = parse_mix("sa:2/motion=line/lens=line");
+  ASSERT_TRUE(mix.ok());
+  EXPECT_EQ(mix->motion, MotionSampling::kLine);
+  EXPECT_EQ(mix->lens, LensSampling::kLine);
+  EXPECT_EQ(label(*mix), "sa:2/balance/lens=line/motion=line");
+  EXPECT_EQ(parse_mix("sa:2/motion=point")->motion, MotionSampling::kPoint);
+}
+
 TEST(Mix, TheNormalFormSaysNothingOfPointsOnTheLens) {
   for (const char* text : {"sa", "sa:1/lens=point", "sa/balance", "sa:1/balance/lens=point"}) {
     const auto mix = parse_mix(text);
@@ -27,7 +36,7 @@ TEST(Mix, TheNormalFormSaysNothingOfPointsOnTheLens) {
 }
 
 TEST(Mix, LabelsAreReadBack) {
-  for (const char* text : {"sa/lens=line", "bsdf+line-sa@v:3/smooth=0.25/lens=line",
+  for (const char* text : {"sa/lens=line", "sa/motion=line", "bsdf+line-sa@v:3/smooth=0.25/lens=line",
                            "sa+area/average/lens=line", "line-area@33.5:2/smooth-ease=auto", "bsdf:1/free"}) {
     const auto mix = parse_mix(text);
     ASSERT_TRUE(mix.ok()) << text;
@@ -39,10 +48,10 @@ TEST(Mix, LabelsAreReadBack) {
 
 TEST(Mix, FaultsNameTheWord) {
   const std::pair<const char*, const char*> faults[] = {
-      {"sa/lens=plane", "'plane'"},          {"sa/lens=", "lens=point or lens=line"},
-      {"sa/lens=line/balance", "'balance'"}, {"sa/balance/power", "'power'"},
-      {"sa/", "unknown combination"},        {"sa/balance/", "after the combination"},
-      {"auto/lens=line", "'auto'"}};
+      {"sa/motion=curve", "'curve'"},           {"sa/lens=plane", "'plane'"},
+      {"sa/lens=", "lens=point or lens=line"},  {"sa/lens=line/balance", "'balance'"},
+      {"sa/balance/power", "'power'"},          {"sa/", "unknown combination"},
+      {"sa/balance/", "after the combination"}, {"auto/lens=line", "'auto'"}};
   for (const auto& [text, message] : faults) {
     const auto mix = parse_mix(text);
     ASSERT_FALSE(mix.ok()) << text;
