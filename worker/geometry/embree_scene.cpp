@@ -9,6 +9,7 @@
 #include <string>
 
 #include "proto/status.h"
+#include "worker/geometry/tube.h"
 
 namespace penumbra {
 namespace {
@@ -50,6 +51,27 @@ GeometryHandle make_triangles(RTCDevice device, const TriangleMesh& mesh, const 
     rtcSetGeometryUserData(geometry.get(), const_cast<AlphaTest*>(alpha));
     rtcSetGeometryIntersectFilterFunction(geometry.get(), alpha_filter);
     rtcSetGeometryOccludedFilterFunction(geometry.get(), alpha_filter);
+  }
+  rtcCommitGeometry(geometry.get());
+  return geometry;
+}
+
+/// Chains of cone-spheres; the inside of a chain is no surface.
+GeometryHandle make_tubes(RTCDevice device, const Tubes& tubes) {
+  GeometryHandle geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE));
+  rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, tubes.points.data(), 0,
+                             sizeof(Imath::V4f), tubes.points.size());
+  rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, tubes.segments.data(), 0,
+                             sizeof(uint32_t), tubes.segments.size());
+  auto* flags = static_cast<uint8_t*>(rtcSetNewGeometryBuffer(
+      geometry.get(), RTC_BUFFER_TYPE_FLAGS, 0, RTC_FORMAT_UCHAR, sizeof(uint8_t), tubes.segments.size()));
+  if (flags == nullptr) return nullptr;
+  const std::vector<uint32_t>& first = tubes.segments;
+  for (size_t i = 0; i < first.size(); ++i) {
+    const bool left = i > 0 && first[i - 1] + 1 == first[i];
+    const bool right = i + 1 < first.size() && first[i] + 1 == first[i + 1];
+    flags[i] = static_cast<uint8_t>((left ? RTC_CURVE_FLAG_NEIGHBOR_LEFT : 0) |
+                                    (right ? RTC_CURVE_FLAG_NEIGHBOR_RIGHT : 0));
   }
   rtcCommitGeometry(geometry.get());
   return geometry;
@@ -104,6 +126,7 @@ struct EmbreeScene::Parts {
   Scenes all, alpha_only;
   uint32_t meshes = 0;
   bool has_alpha = false;
+  std::vector<const Tubes*> tubes;  ///< per mesh; empty if there are none
 
   /// Scenes of the meshes that have a handle.
   Scenes assemble(const std::vector<GeometryHandle>& handles, std::span<const ObjectInput> objects,
@@ -159,7 +182,13 @@ absl::StatusOr<std::unique_ptr<EmbreeScene>> EmbreeScene::build(std::span<const 
       alpha = parts.alphas.emplace_back(std::make_unique<AlphaTest>(meshes[m].alpha)).get();
       tested[m] = parts.has_alpha = true;
     }
-    opaque_and_alpha[m] = make_triangles(parts.device.get(), *meshes[m].mesh, alpha);
+    if (meshes[m].tubes != nullptr) {
+      parts.tubes.resize(meshes.size());
+      parts.tubes[m] = meshes[m].tubes;
+      opaque_and_alpha[m] = make_tubes(parts.device.get(), *meshes[m].tubes);
+    } else {
+      opaque_and_alpha[m] = make_triangles(parts.device.get(), *meshes[m].mesh, alpha);
+    }
     if (!opaque_and_alpha[m]) {
       return make_status(absl::StatusCode::kResourceExhausted, "no memory for a mesh of {} triangles",
                          meshes[m].mesh->triangles());
@@ -199,6 +228,10 @@ std::optional<Hit> EmbreeScene::intersect(const Ray& ray) const {
   hit.distance = query.ray.tfar;
   hit.u = query.hit.u;
   hit.v = query.hit.v;
+  if (!parts_->tubes.empty() && instance == RTC_INVALID_GEOMETRY_ID && parts_->tubes[hit.id.mesh] != nullptr) {
+    const Tubes& tubes = *parts_->tubes[hit.id.mesh];
+    refine(TubeSegment(&tubes.points[tubes.segments[hit.id.primitive]]), ray, hit);
+  }
   return hit;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "scenes/curve.h"
 #include "scenes/mesh.h"
 #include "worker/geometry/intervals.h"
 
@@ -25,6 +26,7 @@ struct MeshInput {
   const TriangleMesh* mesh = nullptr;  ///< world space, or object space if it belongs to an object
   AlphaTest alpha;                     ///< empty: opaque
   bool visible = true;                 ///< false: no ray and no line meets it (material "interface")
+  const Tubes* tubes = nullptr;        ///< in the world; then the mesh is empty, and primitives are segments
 };
 
 /// Meshes [first,last) that are placed together by instances, in object space.
@@ -52,7 +54,7 @@ struct Ray {
 struct Hit {
   PrimitiveId id;
   float distance = 0;  ///< along the ray, in lengths of its direction
-  float u = 0, v = 0;  ///< barycentric: p = (1-u-v) p0 + u p1 + v p2
+  float u = 0, v = 0;  ///< barycentric: p = (1-u-v) p0 + u p1 + v p2; on tubes see tube.h
 };
 
 /// A chord a→b seen from x; a and b lie on (or in the plane of) a light's surface.

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "worker/geometry/line_query.h"
+#include "worker/geometry/tube.h"
 
 namespace penumbra {
 namespace {
@@ -45,6 +46,7 @@ class Walk {
     if (make_fan(x, a, b, 0).degenerate) return;  // a chord seen end on has no width to be seen by
     visible_.reset();
     tree(bvh_.world, x, a, b, excluded_in(bvh_, query_, kNone));
+    if (!bvh_.tubes.tree.nodes.empty()) tubes(x, a, b);
     if (bvh_.instance_tree.nodes.empty()) return;
     const LineFan fan = make_fan(x, a, b, bvh_.instance_tree.reach(x));
     leaves(bvh_.instance_tree, fan, [&](uint32_t instance) {
@@ -58,6 +60,15 @@ class Walk {
   }
 
  private:
+  void tubes(const Vec3d& x, const Vec3d& a, const Vec3d& b) {
+    const TubeFan tube_fan(x, a, b);
+    leaves(bvh_.tubes.tree, make_fan(x, a, b, bvh_.tubes.tree.reach(x)), [&](uint32_t segment) {
+      const Interval hidden = hidden_by_tube(tube_fan, TubeSegment(bvh_.tubes.segments[segment]));
+      visible_.subtract(hidden.lo, hidden.hi);
+      ++counters_.triangles_tested;
+    });
+  }
+
   template <class UseLeaf>
   void leaves(const LineTree& tree, const LineFan& fan, UseLeaf use) {
     const BoxTest test(fan, tree);

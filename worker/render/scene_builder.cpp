@@ -57,6 +57,12 @@ absl::StatusOr<ScenePtr> RenderSceneBuilder::build() {
   used_textures_.resize(description_.textures.size());
   RETURN_IF_ERROR(place_shapes());
   RETURN_IF_ERROR(place_objects());
+  for (TubePlacer::Placed& placed : tubes_.finish()) {
+    scene_->meshes.push_back(std::move(placed.mesh));
+    shapes_.push_back(placed.shape);
+    visible_.push_back(true);
+    alpha_.push_back({1});
+  }
   ASSIGN_OR_RETURN(scene_->effects.media, build_media(description_, files_, shapes_, options_.threads));
   RETURN_IF_ERROR(build_textures());
   RETURN_IF_ERROR(add_lights());
@@ -74,6 +80,7 @@ absl::Status RenderSceneBuilder::place_shapes() {
 }
 
 absl::Status RenderSceneBuilder::place_shape(const ShapeEntity& shape, bool in_object) {
+  if (has_tubes(shape)) return in_object ? absl::OkStatus() : tubes_.add(shape, shape.placement.start);
   if (!has_mesh(shape)) return absl::OkStatus();  // named by unsupported()
   ASSIGN_OR_RETURN(TriangleMesh mesh, make_mesh(shape, description_, files_, warnings_));
   if (mesh.indices.empty()) return absl::OkStatus();
@@ -117,6 +124,8 @@ absl::Status RenderSceneBuilder::place_objects() {
       object = uint32_t(objects_.size());
       objects_.push_back({first, uint32_t(scene_->meshes.size())});
     }
+    for (const ShapeEntity& shape : entity.shapes)
+      if (has_tubes(shape)) RETURN_IF_ERROR(tubes_.add(shape, shape.placement.start * instance.placement.start));
     if (objects_[object].first_mesh == objects_[object].last_mesh) continue;
     const Matrix& to_world = instance.placement.start;
     if (to_world.determinant() == 0)
@@ -158,7 +167,7 @@ absl::Status RenderSceneBuilder::build_geometry() {
   std::vector<MeshInput> inputs;
   inputs.reserve(scene_->meshes.size());
   for (size_t m = 0; m < scene_->meshes.size(); ++m)
-    inputs.push_back({&scene_->meshes[m].mesh, alpha_test(m), visible_[m]});
+    inputs.push_back({&scene_->meshes[m].mesh, alpha_test(m), visible_[m], scene_->meshes[m].tubes.get()});
   ASSIGN_OR_RETURN(scene_->geometry, Geometry::build(inputs, objects_, placed_, options_.threads));
   return absl::OkStatus();
 }

@@ -2,6 +2,7 @@
 // From the description to the scene: meshes placed, lights found, everything built.
 #include "absl/status/statusor.h"
 #include "worker/render/scene.h"
+#include "worker/render/tube_placer.h"
 
 namespace penumbra {
 
@@ -10,7 +11,8 @@ class RenderSceneBuilder {
  public:
   RenderSceneBuilder(const SceneDescription& description, const SceneFiles& files, const LoadOptions& options,
                std::vector<std::string>& warnings)
-      : description_(description), files_(files), options_(options), warnings_(warnings) {}
+      : description_(description), files_(files), options_(options), warnings_(warnings),
+        tubes_(description, files, scene_, warnings) {}
 
   absl::StatusOr<ScenePtr> build();
 
@@ -34,6 +36,7 @@ class RenderSceneBuilder {
   std::vector<bool> used_textures_;
   std::vector<ObjectInput> objects_;
   std::vector<InstanceInput> placed_;
+  TubePlacer tubes_;
 };
 
 /// Area emitters of a placed shape, appended to `lights`; the mesh's triangles are its surface.
