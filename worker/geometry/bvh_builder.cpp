@@ -47,6 +47,15 @@ std::vector<RTCBuildPrimitive> primitives_of(std::span<const Box> boxes) {
   return primitives;
 }
 
+/// All there is, unsplit.
+BuiltLeaf only_leaf(size_t count) {
+  BuiltLeaf leaf;
+  leaf.leaf = true;
+  leaf.count = static_cast<uint32_t>(count);
+  for (uint32_t i = 0; i < leaf.count; ++i) leaf.items[i] = i;
+  return leaf;
+}
+
 struct BvhDeleter {
   void operator()(RTCBVHTy* bvh) const { rtcReleaseBVH(bvh); }
 };
@@ -55,18 +64,23 @@ struct BvhDeleter {
 
 struct TreeBuilder::Device {
   RTCDevice handle;
+  explicit Device(int threads) : handle(rtcNewDevice(("threads=" + std::to_string(threads)).c_str())) {
+    PENUMBRA_CHECK(handle != nullptr);
+  }
   ~Device() { rtcReleaseDevice(handle); }
 };
 
-TreeBuilder::TreeBuilder(int threads)
-    : device_(new Device{rtcNewDevice(("threads=" + std::to_string(threads)).c_str())}) {
-  PENUMBRA_CHECK(device_->handle != nullptr);
-}
+TreeBuilder::TreeBuilder(int threads) : threads_(threads) {}
 
 TreeBuilder::~TreeBuilder() = default;
 
 absl::Status TreeBuilder::build(std::span<const Box> boxes, int leaf_size,
-                                const std::function<void(const BuiltNode&)>& use) const {
+                                const std::function<void(const BuiltNode&)>& use) {
+  if (boxes.size() <= static_cast<size_t>(leaf_size)) {
+    use(only_leaf(boxes.size()));
+    return absl::OkStatus();
+  }
+  if (!device_) device_ = std::make_unique<Device>(threads_);
   const std::unique_ptr<RTCBVHTy, BvhDeleter> bvh(rtcNewBVH(device_->handle));
   std::vector<RTCBuildPrimitive> primitives = primitives_of(boxes);
 

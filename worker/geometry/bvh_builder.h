@@ -31,11 +31,12 @@ class TreeBuilder {
   /// Calls `use` with the root, which lives only during the call. `boxes` must not be empty.
   /// ResourceExhausted if Embree runs out of memory.
   absl::Status build(std::span<const Box> boxes, int leaf_size,
-                     const std::function<void(const BuiltNode&)>& use) const;
+                     const std::function<void(const BuiltNode&)>& use);
 
  private:
   struct Device;
-  std::unique_ptr<Device> device_;
+  int threads_;
+  std::unique_ptr<Device> device_;  ///< made for the first tree of more than one leaf: it takes milliseconds
 };
 
 }  // namespace penumbra

@@ -1,14 +1,16 @@
 #include "worker/geometry/embree_scene.h"
 
+#include <Imath/ImathBox.h>
 #include <embree3/rtcore.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <algorithm>
 #include <limits>
 #include <string>
 
 #include "proto/status.h"
+#include "worker/geometry/light_end.h"
 #include "worker/geometry/tube.h"
 
 namespace penumbra {
@@ -79,7 +81,7 @@ GeometryHandle make_tubes(RTCDevice device, const Tubes& tubes) {
 
 Scene make_scene(RTCDevice device) {
   Scene scene(rtcNewScene(device));
-  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
   rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
   return scene;
 }
@@ -97,19 +99,140 @@ GeometryHandle make_instance(RTCDevice device, RTCScene object, const Matrix& to
   return geometry;
 }
 
-bool segment_hits(RTCScene scene, const Vec3f& x, const Vec3f& y) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  const Vec3f d = y - x;
+/// Anything in (0, far) of the ray from x along d that the context's filter, if it has one, lets pass?
+bool ray_hits(RTCScene scene, RTCIntersectContext& context, const Vec3f& x, const Vec3f& d, float far) {
   RTCRay ray;
   // Strictly beyond x: Embree's robust test counts a surface at the near end itself, and at x it would be
   // the one that x was moved off, by as little as a denormal number where its plane passes through 0.
   ray.org_x = x.x, ray.org_y = x.y, ray.org_z = x.z, ray.tnear = std::numeric_limits<float>::min();
   ray.dir_x = d.x, ray.dir_y = d.y, ray.dir_z = d.z, ray.time = 0;
-  ray.tfar = std::nextafter(1.f, 0.f);
+  ray.tfar = std::nextafter(far, 0.f);
   ray.mask = ~0u, ray.id = 0, ray.flags = 0;
   rtcOccluded1(scene, &context, &ray);
   return ray.tfar < 0;  // Embree's sign of a hit: -inf
+}
+
+/// The scene's own triangles, for the filter that judges hits close to a light.
+struct Surfaces {
+  std::vector<const TriangleMesh*> meshes;
+  std::vector<const Tubes*> tubes;  ///< per mesh, null for triangles; empty if there are none
+  std::vector<Matrix> to_world;     ///< of the instances
+  float extent = 0;              ///< Σ of the three extents of all of them
+
+  const Vec3f& vertex(uint32_t mesh, uint32_t primitive, int corner) const {
+    const TriangleMesh& m = *meshes[mesh];
+    return m.positions[m.indices[3 * size_t{primitive} + static_cast<size_t>(corner)]];
+  }
+  bool is_tube(const PrimitiveId& id) const {
+    return !tubes.empty() && id.instance == kNone && tubes[id.mesh] != nullptr;
+  }
+  TubeSegment segment(const PrimitiveId& id) const {
+    return TubeSegment(&tubes[id.mesh]->points[tubes[id.mesh]->segments[id.primitive]]);
+  }
+  /// In the world.
+  void triangle(const PrimitiveId& id, Vec3d p[3]) const {
+    for (int c = 0; c < 3; ++c) {
+      p[c] = Vec3d(vertex(id.mesh, id.primitive, c));
+      const Vec3d in_object = p[c];
+      if (id.instance != kNone) to_world[id.instance].multVecMatrix(in_object, p[c]);
+    }
+  }
+};
+
+/// Embree's context of a ray that collects what it meets of some meshes.
+struct CollectContext {
+  RTCIntersectContext embree;  // first: the filter is given its address
+  const Surfaces* surfaces;
+  const std::vector<bool>* marked;
+  std::vector<Meeting>* out;
+};
+
+/// Embree's filter: notes a hit, and the ray goes on.
+void collect_filter(const RTCFilterFunctionNArguments* arguments) {
+  const auto& context = *reinterpret_cast<const CollectContext*>(arguments->context);
+  const auto& hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
+  arguments->valid[0] = 0;
+  if (hit.instID[0] != RTC_INVALID_GEOMETRY_ID || !(*context.marked)[hit.geomID]) return;
+  Vec3d p[3];
+  for (int c = 0; c < 3; ++c) p[c] = Vec3d(context.surfaces->vertex(hit.geomID, hit.primID, c));
+  const double u = hit.u, v = hit.v;
+  context.out->push_back({{kNone, hit.geomID, hit.primID}, p[0] * (1 - u - v) + p[1] * u + p[2] * v});
+}
+
+/// Embree's context of a segment that ends on a light, with what its filter needs.
+struct ApproachContext {
+  RTCIntersectContext embree;  // first: the filter is given its address
+  const Surfaces* surfaces;
+  const LightEnd* end;
+  LightApproach approach;
+};
+
+/// Embree's filter: of what a ray meets close to a light only what is before it counts.
+void approach_filter(const RTCFilterFunctionNArguments* arguments) {
+  const auto& context = *reinterpret_cast<const ApproachContext*>(arguments->context);
+  const auto& ray = *reinterpret_cast<const RTCRay*>(arguments->ray);
+  const auto& hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
+  if (ray.tfar < LightApproach::kJudged) return;  // the ray's tfar is the hit's distance here
+  const LightEnd& end = *context.end;
+  const bool placed = hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
+  if (!placed && hit.geomID == end.light.mesh && hit.primID - end.light.primitive < end.light_primitives) {
+    arguments->valid[0] = 0;
+    return;
+  }
+  const Surfaces& all = *context.surfaces;
+  const auto instance = placed ? hit.instID[0] - static_cast<uint32_t>(all.meshes.size()) : kNone;
+  const PrimitiveId id{instance, hit.geomID, hit.primID};
+  if (all.is_tube(id)) {
+    if (!meets(all.segment(id), Vec3d(ray.org_x, ray.org_y, ray.org_z), end.p)) arguments->valid[0] = 0;
+    return;
+  }
+  Vec3d surface[3];
+  all.triangle(id, surface);
+  if (!context.approach.hides(surface)) arguments->valid[0] = 0;
+}
+
+bool approach_hits(RTCScene scene, const Surfaces& surfaces, const Vec3f& x, const LightEnd& y) {
+  ApproachContext context{{}, &surfaces, &y, LightApproach(x, y)};
+  rtcInitIntersectContext(&context.embree);
+  if (context.approach.alone())  // to just before the light, and no filter
+    return ray_hits(scene, context.embree, x, context.approach.way(), context.approach.before());
+  context.embree.filter = approach_filter;
+  return ray_hits(scene, context.embree, x, context.approach.way(), context.approach.beyond(surfaces.extent));
+}
+
+/// What a query around a light looks for.
+struct Neighbours {
+  const Surfaces* surfaces;
+  Imath::Box3d box;
+  PrimitiveId own;
+  uint32_t primitives;
+  bool found = false;
+};
+
+/// Embree's callback for each triangle whose bounds may meet the query's sphere.
+bool find_neighbour(RTCPointQueryFunctionArguments* arguments) {
+  auto& looking = *static_cast<Neighbours*>(arguments->userPtr);
+  const bool placed = arguments->context->instStackSize != 0;
+  const uint32_t mesh = arguments->geomID, primitive = arguments->primID;
+  if (looking.found ||
+      (!placed && mesh == looking.own.mesh && primitive - looking.own.primitive < looking.primitives))
+    return false;
+  const auto meshes = static_cast<uint32_t>(looking.surfaces->meshes.size());
+  const PrimitiveId id{placed ? arguments->context->instID[0] - meshes : kNone, mesh, primitive};
+  Imath::Box3d bounds;
+  if (looking.surfaces->is_tube(id)) {
+    const TubeSegment segment = looking.surfaces->segment(id);
+    for (const double w : {0., 1.})
+      for (const double side : {-1., 1.}) bounds.extendBy(segment.centre(w) + Vec3d(side * segment.radius(w)));
+  } else {
+    Vec3d p[3];
+    looking.surfaces->triangle(id, p);
+    for (const Vec3d& corner : p) bounds.extendBy(corner);
+  }
+  if (!bounds.intersects(looking.box)) return false;
+  looking.found = true;
+  arguments->query->radius = 0;  // enough is known
+  return true;
 }
 
 /// Geometry numbers of a top scene: meshes first, then instances.
@@ -124,9 +247,9 @@ struct EmbreeScene::Parts {
   Device device;
   std::vector<std::unique_ptr<AlphaTest>> alphas;  // Embree keeps the addresses
   Scenes all, alpha_only;
+  Surfaces surfaces;
   uint32_t meshes = 0;
   bool has_alpha = false;
-  std::vector<const Tubes*> tubes;  ///< per mesh; empty if there are none
 
   /// Scenes of the meshes that have a handle.
   Scenes assemble(const std::vector<GeometryHandle>& handles, std::span<const ObjectInput> objects,
@@ -172,6 +295,8 @@ absl::StatusOr<std::unique_ptr<EmbreeScene>> EmbreeScene::build(std::span<const 
   parts.device.reset(rtcNewDevice(("threads=" + std::to_string(threads)).c_str()));
   if (!parts.device) return absl::InternalError("Embree gives no device");
   parts.meshes = static_cast<uint32_t>(meshes.size());
+  for (const MeshInput& mesh : meshes) parts.surfaces.meshes.push_back(mesh.mesh);
+  for (const InstanceInput& instance : instances) parts.surfaces.to_world.push_back(instance.to_world);
 
   std::vector<GeometryHandle> opaque_and_alpha(meshes.size());
   std::vector<bool> tested(meshes.size(), false);
@@ -183,8 +308,8 @@ absl::StatusOr<std::unique_ptr<EmbreeScene>> EmbreeScene::build(std::span<const 
       tested[m] = parts.has_alpha = true;
     }
     if (meshes[m].tubes != nullptr) {
-      parts.tubes.resize(meshes.size());
-      parts.tubes[m] = meshes[m].tubes;
+      parts.surfaces.tubes.resize(meshes.size());
+      parts.surfaces.tubes[m] = meshes[m].tubes;
       opaque_and_alpha[m] = make_tubes(parts.device.get(), *meshes[m].tubes);
     } else {
       opaque_and_alpha[m] = make_triangles(parts.device.get(), *meshes[m].mesh, alpha);
@@ -201,6 +326,9 @@ absl::StatusOr<std::unique_ptr<EmbreeScene>> EmbreeScene::build(std::span<const 
     }
     parts.alpha_only = parts.assemble(opaque_and_alpha, objects, instances);
   }
+  Vec3f lo, hi;
+  scene->bounds(lo, hi);
+  if (lo.x <= hi.x) parts.surfaces.extent = (hi.x - lo.x) + (hi.y - lo.y) + (hi.z - lo.z);
   if (const RTCError error = rtcGetDeviceError(parts.device.get()); error != RTC_ERROR_NONE) {
     return make_status(absl::StatusCode::kResourceExhausted, "Embree error {} while building",
                        static_cast<int>(error));
@@ -228,23 +356,81 @@ std::optional<Hit> EmbreeScene::intersect(const Ray& ray) const {
   hit.distance = query.ray.tfar;
   hit.u = query.hit.u;
   hit.v = query.hit.v;
-  if (!parts_->tubes.empty() && instance == RTC_INVALID_GEOMETRY_ID && parts_->tubes[hit.id.mesh] != nullptr) {
-    const Tubes& tubes = *parts_->tubes[hit.id.mesh];
-    refine(TubeSegment(&tubes.points[tubes.segments[hit.id.primitive]]), ray, hit);
-  }
+  if (parts_->surfaces.is_tube(hit.id)) refine(parts_->surfaces.segment(hit.id), ray, hit);
   return hit;
 }
 
+void EmbreeScene::beside(const Ray& ray, const Hit& first, const std::vector<bool>& marked,
+                         std::vector<Meeting>& out) const {
+  out.clear();
+  const Surfaces& all = parts_->surfaces;
+  const Vec3d way = Vec3d(ray.direction) * double{first.distance};
+  Vec3d n = way.normalized();  // a tube may lie along any plane: the least doubt will do
+  if (!all.is_tube(first.id)) {
+    Vec3d p[3];
+    all.triangle(first.id, p);
+    n = (p[1] - p[0]).cross(p[2] - p[0]).normalized();
+  }
+  const Vec3d end = Vec3d(ray.origin) + way;
+  const auto norm1 = [](const Vec3d& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
+  const float doubt = LightApproach::doubt(static_cast<float>(norm1(end) + norm1(way)) + all.extent,
+                                           static_cast<float>(std::abs(n.dot(way))));
+  CollectContext context{{}, &all, &marked, &out};
+  rtcInitIntersectContext(&context.embree);
+  context.embree.filter = collect_filter;
+  RTCRay query;
+  query.org_x = ray.origin.x, query.org_y = ray.origin.y, query.org_z = ray.origin.z;
+  query.dir_x = ray.direction.x, query.dir_y = ray.direction.y, query.dir_z = ray.direction.z;
+  query.tnear = first.distance * (1 - doubt), query.tfar = first.distance * (1 + doubt);
+  query.time = 0, query.mask = ~0u, query.id = 0, query.flags = 0;
+  rtcOccluded1(parts_->all.top.get(), &context.embree, &query);
+}
+
 bool EmbreeScene::occluded(const Vec3f& x, const Vec3f& y) const {
-  return segment_hits(parts_->all.top.get(), x, y);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  return ray_hits(parts_->all.top.get(), context, x, y - x, 1);
+}
+
+bool EmbreeScene::occluded(const Vec3f& x, const LightEnd& y) const {
+  return approach_hits(parts_->all.top.get(), parts_->surfaces, x, y);
 }
 
 bool EmbreeScene::occluded_by_alpha(const Vec3f& x, const Vec3f& y) const {
-  return parts_->has_alpha && segment_hits(parts_->alpha_only.top.get(), x, y);
+  if (!parts_->has_alpha) return false;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  return ray_hits(parts_->alpha_only.top.get(), context, x, y - x, 1);
+}
+
+bool EmbreeScene::occluded_by_alpha(const Vec3f& x, const LightEnd& y) const {
+  return parts_->has_alpha && approach_hits(parts_->alpha_only.top.get(), parts_->surfaces, x, y);
 }
 
 bool EmbreeScene::has_alpha() const {
   return parts_->has_alpha;
+}
+
+Imath::Box3f EmbreeScene::bounds(const PrimitiveId& first, uint32_t primitives) const {
+  Imath::Box3f box;
+  for (uint32_t i = 0; i < primitives; ++i)
+    for (int c = 0; c < 3; ++c) box.extendBy(parts_->surfaces.vertex(first.mesh, first.primitive + i, c));
+  return box;
+}
+
+bool EmbreeScene::anything_meets(const Imath::Box3d& box, const PrimitiveId& own, uint32_t primitives) const {
+  const Vec3d centre = box.center();
+  Neighbours neighbours{&parts_->surfaces, box, own, primitives};
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  RTCPointQuery query;
+  query.x = static_cast<float>(centre.x), query.y = static_cast<float>(centre.y);
+  query.z = static_cast<float>(centre.z), query.time = 0;
+  // A sphere around the box, wherever single precision puts its centre.
+  const double radius = box.size().length() / 2 + (Vec3d(query.x, query.y, query.z) - centre).length();
+  query.radius = std::nextafter(static_cast<float>(radius), kInfinity);
+  rtcPointQuery(parts_->all.top.get(), &query, &context, find_neighbour, &neighbours);
+  return neighbours.found;
 }
 
 void EmbreeScene::bounds(Vec3f& lo, Vec3f& hi) const {

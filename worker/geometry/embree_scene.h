@@ -1,5 +1,7 @@
 #pragma once
 // Rays: nearest hit and shadow segments, by Embree. This header knows nothing of it.
+#include <Imath/ImathBox.h>
+
 #include <memory>
 #include <span>
 
@@ -16,10 +18,18 @@ class EmbreeScene {
   ~EmbreeScene();
 
   std::optional<Hit> intersect(const Ray& ray) const;
+  void beside(const Ray& ray, const Hit& first, const std::vector<bool>& marked,
+              std::vector<Meeting>& out) const;
   bool occluded(const Vec3f& x, const Vec3f& y) const;
+  bool occluded(const Vec3f& x, const LightEnd& y) const;
   bool occluded_by_alpha(const Vec3f& x, const Vec3f& y) const;
+  bool occluded_by_alpha(const Vec3f& x, const LightEnd& y) const;
   bool has_alpha() const;
+  /// Do the bounds of any triangle meet the box, but those of a light's own `primitives`?
+  bool anything_meets(const Imath::Box3d& box, const PrimitiveId& own, uint32_t primitives) const;
   void bounds(Vec3f& lo, Vec3f& hi) const;
+  /// Of `primitives` triangles from the given one on; not of instances.
+  Imath::Box3f bounds(const PrimitiveId& first, uint32_t primitives) const;
 
  private:
   EmbreeScene();

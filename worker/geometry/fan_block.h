@@ -96,7 +96,8 @@ class FanBlock {
   void set_up(const LineFan& fan) {
     fan_ = &fan;
     near_ = R::all(fan.near);
-    light_ = R::all(fan.light);
+    light_near_ = R::all(fan.light_near);
+    light_far_ = R::all(fan.light_far);
     for (int k = 0; k < 3; ++k) {
       minus_x_[k] = R::all(-fan.x[k]);
       g_[k] = R::all(fan.g[k]);
@@ -137,9 +138,9 @@ class FanBlock {
   struct Crossings {
     R::Floats beta, t, w;
   };
-  /// Where the crossings lie along their rays: neither of these is close to x.
+  /// Where the crossings lie along their rays: none of these is close to x, or to the light.
   struct Place {
-    R::Mask front, behind, beyond, clear;  ///< clear: in front, not beyond
+    R::Mask front, behind, beyond, clear;  ///< clear: in front, before the light
   };
 
   /// Lanes [at, at + R::kLanes) of a block.
@@ -171,7 +172,7 @@ class FanBlock {
     R::Floats v1s = R::div(e1.beta, e1.t), v2s = R::div(e2.beta, e2.t);
     // Mostly all cuts lie clearly between x and the light.
     const R::Floats nearer = R::min(before(near_, e1), before(near_, e2));
-    const R::Floats farther = R::max(before(light_, e1), before(light_, e2));
+    const R::Floats farther = R::max(before(light_near_, e1), before(light_near_, e2));
     R::Mask clear = R::both(R::less_equal(R::all(0), nearer), R::less(farther, R::all(0)));
     if (R::bits(R::without(cut, clear)) != 0) {
       const Place at1 = place(e1), at2 = place(e2);
@@ -210,12 +211,12 @@ class FanBlock {
   static R::Floats before(R::Floats limit, const Crossings& e) { return R::minus_fma(limit, e.w, e.t); }
 
   Place place(const Crossings& e) const {
-    Place p;
-    p.front = R::less_equal(R::all(0), before(near_, e));
-    p.behind = R::less(R::fma(near_, e.w, e.t), R::all(0));
-    p.beyond = R::less_equal(R::all(0), before(light_, e));
-    p.clear = R::without(p.front, p.beyond);
-    return p;
+    Place at;
+    at.front = R::less_equal(R::all(0), before(near_, e));
+    at.behind = R::less(R::fma(near_, e.w, e.t), R::all(0));
+    at.beyond = R::less_equal(R::all(0), before(light_far_, e));
+    at.clear = R::both(at.front, R::less(before(light_near_, e), R::all(0)));
+    return at;
   }
 
   /// Lanes with one end clearly in front and the other clearly behind: that end goes to ±∞.
@@ -245,7 +246,7 @@ class FanBlock {
   }
 
   const LineFan* fan_;
-  R::Floats minus_x_[3], g_[3], beta_[3], t_[3], near_, light_;
+  R::Floats minus_x_[3], g_[3], beta_[3], t_[3], near_, light_near_, light_far_;
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "proto/status.h"
 #include "worker/geometry/bow_tie_walk.h"
 #include "worker/geometry/embree_scene.h"
+#include "worker/geometry/light_end.h"
 #include "worker/geometry/line_fan.h"
 #include "worker/geometry/line_query.h"
 #include "worker/geometry/shaft_list.h"
@@ -95,7 +96,18 @@ std::optional<Hit> Geometry::intersect(const Ray& ray, QueryCounters& counters) 
   return parts_->embree->intersect(ray);
 }
 
+void Geometry::beside(const Ray& ray, const Hit& first, const std::vector<bool>& marked,
+                      std::vector<Meeting>& out, QueryCounters& counters) const {
+  ++counters.rays;
+  parts_->embree->beside(ray, first, marked, out);
+}
+
 bool Geometry::occluded(const Vec3f& x, const Vec3f& y, QueryCounters& counters) const {
+  ++counters.rays;
+  return parts_->embree->occluded(x, y);
+}
+
+bool Geometry::occluded(const Vec3f& x, const LightEnd& y, QueryCounters& counters) const {
   ++counters.rays;
   return parts_->embree->occluded(x, y);
 }
@@ -106,8 +118,28 @@ bool Geometry::occluded_by_alpha(const Vec3f& x, const Vec3f& y, QueryCounters& 
   return parts_->embree->occluded_by_alpha(x, y);
 }
 
+bool Geometry::occluded_by_alpha(const Vec3f& x, const LightEnd& y, QueryCounters& counters) const {
+  if (!parts_->embree->has_alpha()) return false;
+  ++counters.rays;
+  return parts_->embree->occluded_by_alpha(x, y);
+}
+
 bool Geometry::has_alpha() const {
   return parts_->embree->has_alpha();
+}
+
+LightPlace Geometry::place_of(const PrimitiveId& light, uint32_t primitives, const Vec3d& normal) const {
+  PENUMBRA_CHECK(light.instance == kNone);
+  const Imath::Box3f box = parts_->embree->bounds(light, primitives);
+  const Vec3d lo(box.min), hi(box.max), extent = hi - lo;
+  Vec3d own = extent * 2;
+  for (int k = 0; k < 3; ++k) own[k] += std::max(std::abs(lo[k]), std::abs(hi[k]));
+  LightPlace place{rounding_along(normal, own), true};
+  Vec3f scene_lo, scene_hi;
+  bounds(scene_lo, scene_hi);
+  const Vec3d margin(LightApproach::closest(own, Vec3d(scene_hi) - Vec3d(scene_lo)));
+  place.crowded = parts_->embree->anything_meets({lo - margin, hi + margin}, light, primitives);
+  return place;
 }
 
 void Geometry::visible(std::span<const LineQuery> queries, std::vector<IntervalSet>& out,
@@ -135,7 +167,8 @@ void Geometry::visible(const Shaft& shaft, std::span<const LineQuery> queries, s
   }
 }
 
-bool Geometry::occluded(const Shaft& shaft, const Vec3f& x, const Vec3f& y, QueryCounters& counters) const {
+bool Geometry::occluded(const Shaft& shaft, const Vec3f& x, const LightEnd& y,
+                        QueryCounters& counters) const {
   // Alpha-tested meshes are in no list.
   if (shaft.content_ == ShaftContent::kClear) return occluded_by_alpha(x, y, counters);
   return shaft.content_ == ShaftContent::kHidden || occluded(x, y, counters);

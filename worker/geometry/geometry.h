@@ -13,6 +13,7 @@
 #include "scenes/curve.h"
 #include "scenes/mesh.h"
 #include "worker/geometry/intervals.h"
+#include "worker/geometry/light_plane.h"
 
 namespace penumbra {
 
@@ -57,13 +58,37 @@ struct Hit {
   float u = 0, v = 0;  ///< barycentric: p = (1-u-v) p0 + u p1 + v p2; on tubes see tube.h
 };
 
+/// Where a ray meets a triangle.
+struct Meeting {
+  PrimitiveId id;
+  Vec3d p;  ///< on the triangle, in double precision
+};
+
 /// A chord a→b seen from x; a and b lie on (or in the plane of) a light's surface.
 struct LineQuery {
   Vec3f x;  ///< already moved off its own surface (see SurfacePoint::offset)
   Vec3f a, b;
   PrimitiveId light;  ///< primitives [light.primitive, light.primitive + light_primitives) of
   uint32_t light_primitives =
-      0;  ///< light.mesh never hide the chord: they are the light's own (flat) surface
+      0;             ///< light.mesh never hide the chord: they are the light's own (flat) surface
+  LightPlane plane;  ///< what is not before it (light_plane.h) hides nothing
+};
+
+/// A point of a flat light, where a shadow segment ends. Only what lies before the light's plane by more than
+/// the rounding of the vertices (light_plane.h) hides it, as little as that may be.
+struct LightEnd {
+  Vec3d p;
+  LightPlane plane;   ///< known
+  PrimitiveId light;  ///< as in LineQuery: the light's own primitives do not hide it
+  uint32_t light_primitives = 0;
+  bool crowded = true;  ///< LightPlace::crowded; false spares the judging of what is close to the light
+};
+
+/// How a flat light stands in the scene; found once per light.
+struct LightPlace {
+  double rounding = 0;  ///< LightPlane::rounding
+  /// Something else is so close to it that a ray cannot tell the two apart.
+  bool crowded = true;
 };
 
 /// A chord a→b of which every point sends one ray, through `focus` and on: a planar bow-tie.
@@ -105,12 +130,22 @@ class Geometry {
   /// Nearest hit in (near, far].
   std::optional<Hit> intersect(const Ray& ray, QueryCounters& counters) const;
 
+  /// Triangles of the marked meshes that a ray's distances cannot tell from the surface that it met first,
+  /// and perhaps that one itself; in no order. Not of instances.
+  void beside(const Ray& ray, const Hit& first, const std::vector<bool>& marked, std::vector<Meeting>& out,
+              QueryCounters& counters) const;
+
   /// Anything strictly between x and y? Both already moved off their surfaces. Alpha-tested meshes count.
   bool occluded(const Vec3f& x, const Vec3f& y, QueryCounters& counters) const;
 
+  /// The same for a y on a flat light: anything between x and the light's surface, but not that itself?
+  bool occluded(const Vec3f& x, const LightEnd& y, QueryCounters& counters) const;
+
   /// Like occluded(), but only meshes that a line query cannot see (alpha-tested ones); false without any.
   bool occluded_by_alpha(const Vec3f& x, const Vec3f& y, QueryCounters& counters) const;
+  bool occluded_by_alpha(const Vec3f& x, const LightEnd& y, QueryCounters& counters) const;
   bool has_alpha() const;
+  LightPlace place_of(const PrimitiveId& light, uint32_t primitives, const Vec3d& normal) const;
 
   /// The visible part of each query's chord as intervals of v in [0,1], P(v) = a + v (b - a); opaque
   /// meshes only. Queries of one call share x (they are traced together where that is faster); the
@@ -125,11 +160,11 @@ class Geometry {
   void visible(const Shaft& shaft, std::span<const LineQuery> queries, std::vector<IntervalSet>& out,
                QueryCounters& counters) const;
   /// As occluded(x, y), for the shaft's x and a y on its light, on its side of the horizon.
-  bool occluded(const Shaft& shaft, const Vec3f& x, const Vec3f& y, QueryCounters& counters) const;
+  bool occluded(const Shaft& shaft, const Vec3f& x, const LightEnd& y, QueryCounters& counters) const;
 
-  /// The nearest surface along the rays of a focused chord: ascending intervals that cover [0,1]. Opaque meshes only,
-  /// and to within double precision: where the answer decides what is looked at, a ray must still look. One
-  /// interval of nothing for a chord seen end on from the focus.
+  /// The nearest surface along the rays of a focused chord: ascending intervals that cover [0,1]. Opaque
+  /// meshes only, and to within double precision: where the answer decides what is looked at, a ray must
+  /// still look. One interval of nothing for a chord seen end on from the focus.
   void nearest(const FocusedChord& chord, std::vector<SeenInterval>& out, QueryCounters& counters) const;
 
   struct BuildTimes {

@@ -138,7 +138,7 @@ Box bounds_of(std::span<const Box> boxes) {
   return all;
 }
 
-absl::Status build_tree(std::span<const Box> boxes, const TriangleList* triangles, const TreeBuilder& builder,
+absl::Status build_tree(std::span<const Box> boxes, const TriangleList* triangles, TreeBuilder& builder,
                         LineTree& tree) {
   if (boxes.empty()) return absl::OkStatus();
   const int leaf_size = triangles == nullptr ? 1 : kWidth;
@@ -185,8 +185,7 @@ Box placed_bounds(const LineTree& tree, const Matrix& to_world) {
   return box;
 }
 
-absl::Status place_instances(LineBvh& bvh, std::span<const InstanceInput> instances,
-                             const TreeBuilder& builder) {
+absl::Status place_instances(LineBvh& bvh, std::span<const InstanceInput> instances, TreeBuilder& builder) {
   std::vector<Box> boxes;
   std::vector<uint32_t> numbers;
   bvh.instances.resize(instances.size());
@@ -208,7 +207,7 @@ absl::Status place_instances(LineBvh& bvh, std::span<const InstanceInput> instan
   return absl::OkStatus();
 }
 
-absl::Status build_tubes(std::span<const MeshInput> meshes, const TreeBuilder& builder, LineTubes& tubes) {
+absl::Status build_tubes(std::span<const MeshInput> meshes, TreeBuilder& builder, LineTubes& tubes) {
   std::vector<Box> boxes;
   for (const MeshInput& input : meshes) {
     if (input.tubes == nullptr || !input.visible) continue;
@@ -247,7 +246,8 @@ absl::Status check_line_input(std::span<const MeshInput> meshes, std::span<const
   if (triangles >= kNone)
     return make_status(absl::StatusCode::kResourceExhausted, "more than {} triangles in one scene", kNone);
   if (segments >= kNone)
-    return make_status(absl::StatusCode::kResourceExhausted, "curves of more than {} segments in one scene", kNone);
+    return make_status(absl::StatusCode::kResourceExhausted, "curves of more than {} segments in one scene",
+                       kNone);
   for (size_t i = 0; i < instances.size(); ++i) {
     const double det = instances[i].to_world.determinant();
     if (!std::isfinite(det) || det == 0) return invalid_input("instance {}: its transform is singular", i);
@@ -259,7 +259,7 @@ absl::StatusOr<LineBvh> build_line_bvh(std::span<const MeshInput> meshes,
                                        std::span<const ObjectInput> objects,
                                        std::span<const InstanceInput> instances, int threads) {
   RETURN_IF_ERROR(check_line_input(meshes, instances));
-  const TreeBuilder builder(threads);
+  TreeBuilder builder(threads);
   static std::atomic<uint64_t> built{0};
   LineBvh bvh;
   bvh.id = ++built;

@@ -57,8 +57,11 @@ bool in_front(const LineFan& fan, const Crossing& e) {
 bool behind(const LineFan& fan, const Crossing& e) {
   return std::fma(fan.near, e.w, e.t) < 0;
 }
+bool before_light(const LineFan& fan, const Crossing& e) {
+  return std::fma(-fan.light_near, e.w, e.t) < 0;
+}
 bool beyond(const LineFan& fan, const Crossing& e) {
-  return std::fma(-fan.light, e.w, e.t) >= 0;
+  return std::fma(-fan.light_far, e.w, e.t) >= 0;
 }
 
 /// An interval's ends in any order, clamped to the chord.
@@ -74,21 +77,54 @@ struct End {
 
 /// Decided from the edge's own numbers alone, so that both neighbours decide alike.
 End end_of(const LineFan& fan, const Crossing& e, const Vec3d& q, const Vec3d& q_odd) {
-  if (in_front(fan, e)) return {e.beta / e.t, false, beyond(fan, e)};
+  const bool front = in_front(fan, e);
+  if (front && before_light(fan, e)) return {e.beta / e.t, false, false};
+  if (front && beyond(fan, e)) return {e.beta / e.t, false, true};
   if (behind(fan, e)) return {0, true, false};
   const double g = std::abs(fan.g_exact.dot(q)), g_odd = std::abs(fan.g_exact.dot(q_odd));
   const double t = g * fan.t_exact.dot(q_odd) + g_odd * fan.t_exact.dot(q);
   if (!(t > 0)) return {0, true, false};
   const double beta = g * fan.beta_exact.dot(q_odd) + g_odd * fan.beta_exact.dot(q);
-  return {static_cast<float>(beta / t), false, beyond(fan, e)};
+  return {front ? e.beta / e.t : static_cast<float>(beta / t), false, t >= fan.light * (g + g_odd)};
+}
+
+/// The light's plane, and where double precision must say what is before it. If it is not known, it is the
+/// one that holds the chord and is across the fan, and only the chord's own roundings count, relative to x.
+void set_plane(LineFan& fan, const LightPlane& plane, double light, double reach, double unsure) {
+  const bool known = plane.normal != Vec3d(0, 0, 0);
+  const Vec3d& n = known ? plane.normal : fan.t_exact;
+  fan.plane = plane.normal;
+  fan.height = std::abs(n.dot(fan.a));
+  fan.rounding = known ? plane.rounding : 5 * std::max(rounding_along(n, fan.a), rounding_along(n, fan.b));
+  // No vertex is rounded by more; seen from near the light's plane, that is much of the way.
+  const Vec3d& x = fan.x_exact;
+  const Vec3d far(std::abs(x.x) + reach, std::abs(x.y) + reach, std::abs(x.z) + reach);
+  const double coplanar = fan.rounding + rounding_along(fan.plane, far);
+  unsure += coplanar < fan.height ? light * (coplanar / fan.height) : light;
+  fan.light_near = static_cast<float>(light - unsure);
+  fan.light_far = static_cast<float>(light + unsure);
+}
+
+/// Does the triangle's plane cut the rays to both ends of the chord beyond the light, or before it by less
+/// than the rounding of what they are made of (light_plane.h)? Then the triangle hides nothing. `h`, `a`,
+/// `b`: from x to the plane and from the plane to the ends, along its normal: a ray to an end meets it at
+/// h/(h + a) of its length.
+bool none_before_light(const LineFan& fan, const Vec3f p[3], double h, double a, double b) {
+  if (h < 0) h = -h, a = -a, b = -b;
+  if (a <= 0 && b <= 0) return true;  // a surface just below x, as every x has one
+  double coplanar = 0;
+  for (int i = 0; i < 3; ++i) coplanar = std::max(coplanar, rounding_along(fan.plane, Vec3d(p[i])));
+  coplanar += fan.rounding;
+  return a * fan.height <= coplanar * (h + a) && b * fan.height <= coplanar * (h + b);
 }
 
 }  // namespace
 
-void set_up(LineFan& fan, const Vec3d& x, const Vec3d& a, const Vec3d& b, double reach) {
+void set_up(LineFan& fan, const Vec3d& x, const Vec3d& a, const Vec3d& b, double reach,
+            const LightPlane& plane) {
   fan.degenerate = true;
-  fan.light = fan.near = fan.error = 0;
-  fan.slack = 0;
+  fan.light_near = fan.light_far = fan.near = fan.error = 0;
+  fan.light = fan.height = fan.rounding = fan.slack = 0;
   fan.x = Vec3f(x);
   fan.x_exact = x;
   fan.a = a;
@@ -113,8 +149,12 @@ void set_up(LineFan& fan, const Vec3d& x, const Vec3d& a, const Vec3d& b, double
   fan.g = Vec3f(fan.g_exact = n);
   fan.beta = Vec3f(fan.beta_exact = beta);
   fan.t = Vec3f(fan.t_exact = t);
-  // An occluder hides only what is beyond it: one in the light's own line must not win by a rounding.
-  fan.light = static_cast<float>(light - error_per_length * farther_end);
+  // An occluder hides only what is beyond it: close to the light's line double precision decides. A crossing
+  // is a mean of its edge's t, each off by 5 u |t|₁ reach, with three roundings more; a little for these
+  // bounds' own.
+  const double unsure = 2 * error_per_length * std::max(reach, farther_end);
+  fan.light = light;
+  set_plane(fan, plane, light, reach, unsure);
   // Near x the error of t and β is not small against t: v could come out with the wrong sign and hide the
   // whole chord (a floor just below x, parallel to the chord, is the common case). Below 2^10 error bounds
   // the edge is evaluated in double; above, v is wrong by at most 2^-10 of an interval end near x.
@@ -143,10 +183,9 @@ bool has_area(const Vec3d& a, const Vec3d& b) {
 Interval hidden_near_ends(const LineFan& fan, const Vec3f p[3], int odd) {
   Vec3d q[3];
   for (int i = 0; i < 3; ++i) q[i] = Vec3d(p[i]) - fan.x_exact;
-  // The fan on one side of the triangle's plane: a surface just below x, as every x has one.
   const Vec3d normal = (q[1] - q[0]).cross(q[2] - q[0]);
   const double h = normal.dot(q[0]), a = normal.dot(fan.a) - h, b = normal.dot(fan.b) - h;
-  if ((h < 0 && a > 0 && b > 0) || (h > 0 && a < 0 && b < 0)) return kHidesNothing;
+  if (none_before_light(fan, p, h, a, b)) return kHidesNothing;
   const Corners corners(fan, p);
   End ends[2] = {end_of(fan, corners.lower_edge(odd), q[odd == 0 ? 1 : 0], q[odd]),
                  end_of(fan, corners.higher_edge(odd), q[odd == 2 ? 1 : 2], q[odd])};
@@ -178,7 +217,8 @@ Interval hidden_by_triangle(const LineFan& fan, const Vec3f p[3]) {
   const int odd = differs1 && differs2 ? 0 : differs1 ? 1 : 2;
   const Crossing e1 = corners.lower_edge(odd), e2 = corners.higher_edge(odd);
   if ((behind(fan, e1) && behind(fan, e2)) || (beyond(fan, e1) && beyond(fan, e2))) return kHidesNothing;
-  const bool front1 = in_front(fan, e1) && !beyond(fan, e1), front2 = in_front(fan, e2) && !beyond(fan, e2);
+  const bool front1 = in_front(fan, e1) && before_light(fan, e1),
+             front2 = in_front(fan, e2) && before_light(fan, e2);
   if (front1 && front2) return ordered(e1.beta / e1.t, e2.beta / e2.t);
   if ((front1 && behind(fan, e2)) || (front2 && behind(fan, e1))) {
     // The cut passes x at β = (β2 t1 - β1 t2) / (t1 - t2) on its way back: to v = ±∞ by the sign, if that

@@ -14,31 +14,36 @@
 
 #include "scenes/math.h"
 #include "worker/geometry/intervals.h"
+#include "worker/geometry/light_plane.h"
 
 namespace penumbra {
 
-/// Unit roundoff of binary32.
-constexpr double kFloatRoundoff = 0x1p-24;
-
 struct LineFan {
   // Single precision: what vectors compute with.
-  Vec3f x, g, beta, t;  ///< functionals of p - x
-  float light;          ///< t at which an occluder is no longer in front of the light
-  float near;           ///< |t| below this is decided in double precision (see make_fan)
-  float error;          ///< bound of the rounding errors of where an edge crosses the plane
+  Vec3f x, g, beta, t;          ///< functionals of p - x
+  float light_near, light_far;  ///< t is before the light below the one, beyond it from the other on
+  float near;                   ///< |t| below this is decided in double precision (see set_up)
+  float error;                  ///< bound of the rounding errors of where an edge crosses the plane
 
   // Double precision: the same fan for the few edges that need it.
   Vec3d x_exact, a, b;  ///< a, b relative to x
   Vec3d g_exact, beta_exact, t_exact;
+  double light;     ///< t on the light's line
+  Vec3d plane;      ///< normal of the light's plane, any length; 0: not known. Measured along it:
+  double height;    ///< of x over that plane
+  double rounding;  ///< by which the light's points may be off their plane
   double slack;     ///< length by which boxes are widened, so that no rounding of the above is culled
   bool degenerate;  ///< x, a and b are collinear: the fan has no area
 };
 
 /// Fan of (x, x+a, x+b) in the coordinates of one tree. `reach`: no vertex is farther from x than this.
-void set_up(LineFan& fan, const Vec3d& x, const Vec3d& a, const Vec3d& b, double reach);
-inline LineFan make_fan(const Vec3d& x, const Vec3d& a, const Vec3d& b, double reach) {
+/// `plane`: of the light, in the same coordinates; not known: the plane across the fan.
+void set_up(LineFan& fan, const Vec3d& x, const Vec3d& a, const Vec3d& b, double reach,
+            const LightPlane& plane = {});
+inline LineFan make_fan(const Vec3d& x, const Vec3d& a, const Vec3d& b, double reach,
+                        const LightPlane& plane = {}) {
   LineFan fan;
-  set_up(fan, x, a, b, reach);
+  set_up(fan, x, a, b, reach, plane);
   return fan;
 }
 

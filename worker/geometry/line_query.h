@@ -13,6 +13,12 @@ enum class LinePath { kScalar, kAvx2, kAvx512 };
 LinePath widest_line_path();
 const char* name_of(LinePath path);
 
+/// The light's plane as a query's fan wants it: its chord's ends are rounded, too.
+LightPlane chord_plane(const LineQuery& query);
+/// The same plane in the coordinates of an object, `a` and `b` being the chord's ends relative to x there
+/// (oa) and here: distances along the normal stay what they are.
+LightPlane placed_plane(const LightPlane& plane, const Vec3d& a, const Vec3d& b, const Matrix& to_object);
+
 /// Visible parts of chords that share x, by the given path. `out` is resized to queries.size().
 void visible_lines(const LineBvh& bvh, LinePath path, std::span<const LineQuery> queries,
                    std::vector<IntervalSet>& out, QueryCounters& counters);

@@ -45,17 +45,19 @@ class Walk {
     visible_.clear();
     if (make_fan(x, a, b, 0).degenerate) return;  // a chord seen end on has no width to be seen by
     visible_.reset();
-    tree(bvh_.world, x, a, b, excluded_in(bvh_, query_, kNone));
+    const LightPlane plane = chord_plane(query_);
+    tree(bvh_.world, x, a, b, plane, excluded_in(bvh_, query_, kNone));
     if (!bvh_.tubes.tree.nodes.empty()) tubes(x, a, b);
     if (bvh_.instance_tree.nodes.empty()) return;
-    const LineFan fan = make_fan(x, a, b, bvh_.instance_tree.reach(x));
+    const LineFan fan = make_fan(x, a, b, bvh_.instance_tree.reach(x), plane);
     leaves(bvh_.instance_tree, fan, [&](uint32_t instance) {
       const LineInstance& placed = bvh_.instances[instance];
       Vec3d ox, oa, ob;
       placed.to_object.multVecMatrix(x, ox);
       placed.to_object.multDirMatrix(a, oa);
       placed.to_object.multDirMatrix(b, ob);
-      tree(bvh_.objects[placed.tree], ox, oa, ob, excluded_in(bvh_, query_, instance));
+      tree(bvh_.objects[placed.tree], ox, oa, ob, placed_plane(plane, a, b, placed.to_object),
+           excluded_in(bvh_, query_, instance));
     });
   }
 
@@ -88,9 +90,10 @@ class Walk {
     }
   }
 
-  void tree(const LineTree& tree, const Vec3d& x, const Vec3d& a, const Vec3d& b, const Excluded& excluded) {
+  void tree(const LineTree& tree, const Vec3d& x, const Vec3d& a, const Vec3d& b, const LightPlane& plane,
+            const Excluded& excluded) {
     if (tree.nodes.empty()) return;
-    const LineFan fan = make_fan(x, a, b, tree.reach(x));
+    const LineFan fan = make_fan(x, a, b, tree.reach(x), plane);
     if (fan.degenerate) return;
     leaves(tree, fan, [&](uint32_t block_index) {
       const TriangleBlock& block = tree.blocks[block_index];

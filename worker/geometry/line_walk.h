@@ -94,7 +94,8 @@ class LineWalk {
     walking_ = false;
     const LineTree& frame = bvh().world.nodes.empty() ? bvh().instance_tree : bvh().world;
     x_ = Vec3d(query.x), a_ = Vec3d(query.a) - x_, b_ = Vec3d(query.b) - x_;
-    penumbra::set_up(fan_, x_, a_, b_, frame.nodes.empty() ? 0 : frame.reach(x_));
+    plane_ = chord_plane(query);
+    penumbra::set_up(fan_, x_, a_, b_, frame.nodes.empty() ? 0 : frame.reach(x_), plane_);
     in_world_ = !fan_.degenerate && !bvh().world.nodes.empty();
     if (!in_world_) return;
     excluded_ = excluded_in(bvh(), query, kNone);
@@ -160,7 +161,7 @@ class LineWalk {
   }
 
   void placed_objects() {
-    const LineFan fan = make_fan(x_, a_, b_, bvh().instance_tree.reach(x_));
+    const LineFan fan = make_fan(x_, a_, b_, bvh().instance_tree.reach(x_), plane_);
     TreeWalk walk;
     walk.start(bvh().instance_tree, fan, visible_, buffers_->stack.data());
     while (!walk.done()) {
@@ -182,7 +183,7 @@ class LineWalk {
     placed.to_object.multVecMatrix(x_, x);
     placed.to_object.multDirMatrix(a_, a);
     placed.to_object.multDirMatrix(b_, b);
-    const LineFan fan = make_fan(x, a, b, tree.reach(x));
+    const LineFan fan = make_fan(x, a, b, tree.reach(x), placed_plane(plane_, a_, b_, placed.to_object));
     if (fan.degenerate) return false;
     FanBlock fan_block;
     fan_block.set_up(fan);
@@ -221,7 +222,8 @@ class LineWalk {
   const LineQuery* query_;
   VisibleSet visible_;
   Vec3d x_, a_, b_;
-  LineFan fan_;  ///< in the world, as are the next three
+  LightPlane plane_;  ///< of the chord
+  LineFan fan_;       ///< in the world, as are the next three
   Excluded excluded_;
   FanBlock block_;
   TreeWalk walk_;

@@ -234,7 +234,8 @@ class ListLines {
   void run(const LineQuery& query, IntervalSet& out) {
     out.clear();
     const Vec3d x(query.x);
-    const LineFan fan = make_fan(x, Vec3d(query.a) - x, Vec3d(query.b) - x, bvh_.world.reach(x));
+    const LineFan fan =
+        make_fan(x, Vec3d(query.a) - x, Vec3d(query.b) - x, bvh_.world.reach(x), chord_plane(query));
     if (fan.degenerate) return;
     visible_.reset(buffers_);
     FanBlock fan_block;

@@ -217,6 +217,12 @@ void refine(const TubeSegment& s, const Ray& ray, Hit& hit) {
   hit.v = static_cast<float>(turn < 0 ? turn + 1 : turn);
 }
 
+bool meets(const TubeSegment& s, const Vec3d& x, const Vec3d& y) {
+  Hull hull;
+  crossings(s, {x, y - x}, [&](double v) { hull.add(v); });
+  return hull.lo <= 1 && hull.hi >= 0;
+}
+
 TubePoint tube_point(const TubeSegment& s, float u, float v) {
   const TubeFrame frame(s.e);
   TubePoint point;

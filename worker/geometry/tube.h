@@ -38,6 +38,9 @@ struct TubePoint {
 /// are set so that tube_point() gives the point back.
 void refine(const TubeSegment& segment, const Ray& ray, Hit& hit);
 
+/// Has the segment from x to y a point in common with the tube?
+bool meets(const TubeSegment& segment, const Vec3d& x, const Vec3d& y);
+
 /// The point of a hit. u runs along the segment from 0 to 1 on its side; on the first ball's cap it is
 /// smaller, on the last one's larger, by how far the normal leans over there. v is the angle about the axis
 /// over 2π.

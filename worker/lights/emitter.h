@@ -18,6 +18,9 @@ struct AreaEmitter {
   uint32_t primitives = 0;
   /// The triangles are the shape itself (quad, triangle), not a tessellation of it.
   bool flat = true;
+  // How it stands in the scene, if it is flat (geometry: LightPlace).
+  double rounding = 0;
+  bool crowded = true;
   /// Its surface is not there for rays (`"float alpha" 0`): a material's direction cannot meet it.
   bool invisible = false;
 };

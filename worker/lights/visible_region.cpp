@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "proto/status.h"
 #include "worker/lights/plane_side.h"
@@ -19,9 +18,9 @@ constexpr double kSmallestPiece = 0x1p-64;
 constexpr double kSmallestCut = 0x1p-80;
 /// No piece as narrow as a line's rounding is larger.
 constexpr double kNarrowPiece = 0x1p-40;
-/// Occluders nearer to the light's plane than its roundings in single precision do not count: as for lines
-/// and for the ends of shadow segments (strategies: end_on_light).
-constexpr double kBeforeLight = 16 * std::numeric_limits<float>::epsilon();
+/// Of a vertex in single precision: occluders nearer to the light's plane than its roundings and theirs do
+/// not count, as for lines and for the ends of shadow segments (geometry: light_plane.h).
+constexpr double kVertexRoundoff = 0x1p-24;
 
 double norm1(const Vec3d& v) {
   return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
@@ -60,7 +59,7 @@ void VisibleRegion::clear() {
   whole_ = false;
 }
 
-void VisibleRegion::reset(const LightShape& shape, const Vec3d& x, const Vec3d& horizon) {
+void VisibleRegion::reset(const LightShape& shape, const Vec3d& x, const Vec3d& horizon, double rounding) {
   clear();
   x_ = x;
   Polygon all;
@@ -81,10 +80,11 @@ void VisibleRegion::reset(const LightShape& shape, const Vec3d& x, const Vec3d& 
   const PlaneSide side = side_of_plane(-o_, u_, v_);
   if (!(side.distance > 0)) return;
   depth_ = side.distance * side.twice_area;
+  rounding_ = rounding * side.twice_area;
   Polygon above, below;
-  const double rounding = 8 * kRoundoff * norm1(horizon) * (norm1(o_) + norm1(u_) + norm1(v_));
+  const double sure = 8 * kRoundoff * norm1(horizon) * (norm1(o_) + norm1(u_) + norm1(v_));
   // All of it above where there is no horizon: every corner is at 0.
-  split(all, side_of(horizon, rounding), above, below);
+  split(all, side_of(horizon, sure), above, below);
   whole_ = below.size == 0;
   if (above.area() > kSmallestPiece) pieces_.push_back(above);
 }
@@ -115,13 +115,13 @@ bool VisibleRegion::subtract(const std::array<Vec3f, 3>& triangle) {
 
   // Only what lies before the light's plane hides; its shadow is the cone over that part, an intersection of
   // half-spaces through x wherever its corners are.
-  const double length = across_.length();
-  const Vec3d largest = o_ + x_;
-  const double before = depth_ - kBeforeLight * length * (norm1(largest) + norm1(u_) + norm1(v_) + norm1(o_));
   double depth[3];
   int far = 0;
   for (int i = 0; i < 3; ++i) {
-    depth[i] = before + across_.dot(q[i]);  // > 0: before the light
+    double own = 0;
+    for (int k = 0; k < 3; ++k) own += std::abs(across_[k] * double(triangle[size_t(i)][k]));
+    // > 0: before the light. By each vertex's own rounding, so that the triangles of an edge cut it alike.
+    depth[i] = depth_ + across_.dot(q[i]) - (rounding_ + kVertexRoundoff * own);
     if (!(depth[i] > 0)) ++far;
   }
   if (far == 3) return true;

@@ -19,8 +19,9 @@ class VisibleRegion {
   /// Nothing.
   void clear();
   /// All of a quad or triangle that x sees if nothing hides it: from the front, and above the horizon through
-  /// x with the unit normal `horizon` (0: no horizon).
-  void reset(const LightShape& shape, const Vec3d& x, const Vec3d& horizon);
+  /// x with the unit normal `horizon` (0: no horizon). `rounding`: by which the light's points may be off its
+  /// plane; occluders hide from their own rounding before that on.
+  void reset(const LightShape& shape, const Vec3d& x, const Vec3d& horizon, double rounding = 0);
   /// Takes away what the triangle hides: it may lie anywhere, behind x and beyond the light it hides nothing.
   /// False: that would be too many pieces; the region is of no use then.
   bool subtract(const std::array<Vec3f, 3>& triangle);
@@ -82,6 +83,7 @@ class VisibleRegion {
   Vec3d o_{0, 0, 0}, u_{0, 0, 0}, v_{0, 0, 0};  ///< of the light, o minus x
   Vec3d across_{0, 0, 0};                       ///< u × v: the emission side
   double depth_ = 0;                            ///< of the light's plane along −across, × |across|: > 0
+  double rounding_ = 0;                         ///< of the light's points along across, × |across|
   double full_area_ = 1;                        ///< of the light, in its coordinates
   bool whole_ = false;
   std::vector<Polygon> pieces_, before_;

@@ -11,7 +11,7 @@ MaterialBuilder::Built MaterialBuilder::hair(const MaterialEntity& entity) {
   constexpr float kUnbounded = std::numeric_limits<float>::max();
   const auto given = [&](std::string_view name) { return entity.params.find(name) != nullptr; };
   const char* const color_name = given("reflectance") ? "reflectance" : "color";
-  HairMaterial m;
+  HairMaterial m{.tint = {Rgb(0)}};
   if (given("sigma_a")) {
     m.pigment = HairMaterial::Pigment::kAbsorption;
     ASSIGN_OR_RETURN(m.tint, color(entity, "sigma_a", Rgb(0)));

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "worker/render/surface.h"
+#include "worker/strategies/light_hit.h"
 #include "worker/strategies/light_pivot.h"
 
 namespace penumbra {
@@ -111,11 +112,10 @@ Rgb PathTracer::lit(const std::vector<ScatterVertex>& vertices, const Ray& ray, 
   return sum;
 }
 
-Rgb PathTracer::emitted(const Hit& hit, const Ray& ray) const {
+Rgb PathTracer::emitted(const Hit& hit, const Ray& ray) {
   if (scene_.lights.area.empty()) return Rgb(0);
-  const Vec3d p = Vec3d(ray.origin) + Vec3d(ray.direction) * double(hit.distance);
-  const uint32_t emitter = scene_.lights.emitter_at(hit.id, p, ray.direction);
-  return emitter == kNone ? Rgb(0) : scene_.lights.area[emitter].radiance;
+  const auto met = light_met(*scene_.geometry, scene_.lights, ray, hit, counters_);
+  return met ? scene_.lights.area[met->emitter].radiance : Rgb(0);
 }
 
 Rgb PathTracer::background(const Vec3f& direction) const {

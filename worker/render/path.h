@@ -26,7 +26,7 @@ class PathTracer {
   Rgb emission(const CameraRay& ray);
 
  private:
-  Rgb emitted(const Hit& hit, const Ray& ray) const;
+  Rgb emitted(const Hit& hit, const Ray& ray);
   /// What media scatter towards the ray's origin from before `distance`; takes from the throughput what does
   /// not pass them.
   Rgb scattered(const Ray& ray, double distance, const PassSampler& sampler, int depth, Rgb& throughput);

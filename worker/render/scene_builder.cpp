@@ -169,6 +169,14 @@ absl::Status RenderSceneBuilder::build_geometry() {
   for (size_t m = 0; m < scene_->meshes.size(); ++m)
     inputs.push_back({&scene_->meshes[m].mesh, alpha_test(m), visible_[m], scene_->meshes[m].tubes.get()});
   ASSIGN_OR_RETURN(scene_->geometry, Geometry::build(inputs, objects_, placed_, options_.threads));
+  for (AreaEmitter& light : scene_->lights.area) {
+    if (!light.flat) continue;
+    const PrimitiveId id{kNone, light.mesh, light.first_primitive};
+    const LightPlace place =
+        scene_->geometry->place_of(id, light.primitives, emission_normal(light.shape, Vec3d(0)));
+    light.rounding = place.rounding;
+    light.crowded = place.crowded;
+  }
   return absl::OkStatus();
 }
 

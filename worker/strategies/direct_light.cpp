@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "worker/strategies/light_hit.h"
 #include "worker/strategies/smoothing.h"
 
 namespace penumbra {
@@ -19,17 +20,6 @@ bool is_black(const Rgb& c) {
 /// Samples that the mix expects of a slot at this light: the n_s of the balance heuristic.
 double expected_count(const PreparedMix::Slot& slot, double draws) {
   return is_bsdf(slot.strategy) ? slot.count : slot.count * draws;
-}
-
-/// End of a shadow segment on a flat light: moved off the light's plane towards x. A ray's distance to that
-/// plane is a quotient of n · (p0 - x), whose rounding (of the vertices, of n as a cross product, of the sum)
-/// is a few units of the last place of the largest length in it: coordinates of the light, distance to x.
-Vec3f end_on_light(const LightPoint& at, const Vec3d& x) {
-  const double largest =
-      std::max({std::abs(at.p.x), std::abs(at.p.y), std::abs(at.p.z)}) + (x - at.p).length();
-  const double rounding = 16 * std::numeric_limits<float>::epsilon() * largest;
-  const double side = at.n.dot(x - at.p) < 0 ? -1 : 1;
-  return Vec3f(at.p + at.n * (side * rounding));
 }
 
 }  // namespace
@@ -117,12 +107,12 @@ void DirectLight::trace_bsdf(const ShadingPoint& point, const PassSampler& sampl
         }
         continue;
       }
-      const Vec3d p = Vec3d(ray.origin) + Vec3d(wi) * double(hit->distance);
-      const uint32_t emitter = lights.emitter_at(hit->id, p, wi);
-      if (emitter == kNone) continue;
-      found.light = emitter;
-      found.sample.radiance = lights.area[emitter].radiance;
-      found.sample.at = {p, emission_normal(lights.area[emitter].shape, p), scattered->pdf};
+      const auto met = light_met(scene_.geometry, lights, ray, *hit, counters_);
+      if (!met) continue;
+      const AreaEmitter& light = lights.area[met->emitter];
+      found.light = met->emitter;
+      found.sample.radiance = light.radiance;
+      found.sample.at = {met->p, emission_normal(light.shape, met->p), scattered->pdf};
       hits_.push_back(found);
     }
   }
@@ -295,7 +285,7 @@ void DirectLight::densities(const Task& task, Candidate& c, double* row) {
   if (c.sight == Sight::kUnknown) {
     if (!clear(task, c.sample)) c.f = Rgb(0);
   } else if (c.sight == Sight::kNoOpaque && scene_.geometry.has_alpha() && !is_black(c.f)) {
-    const Vec3f end = end_on_light(c.sample.at, x);
+    const LightEnd end = end_on_light(task.view.area(), c.sample.at.p, c.sample.at.n);
     if (scene_.geometry.occluded_by_alpha(task.view.point().origin(c.sample.wi), end, counters_))
       c.f = Rgb(0);
   }
@@ -335,7 +325,7 @@ bool DirectLight::clear(const Task& task, const LightSample& sample) {
   if (const VisibleRegion* region = task.view.region(); region != nullptr && !region->holds(sample.at.p))
     return false;
   if (task.view.area().flat) {
-    const Vec3f end = end_on_light(sample.at, task.view.x());
+    const LightEnd end = end_on_light(task.view.area(), sample.at.p, sample.at.n);
     if (task.view.region() != nullptr) return !scene_.geometry.occluded_by_alpha(origin, end, counters_);
     const Shaft* shaft = sight_.for_rays(origin);
     return !(shaft != nullptr ? scene_.geometry.occluded(*shaft, origin, end, counters_)

@@ -12,6 +12,16 @@ constexpr double kPi = std::numbers::pi;
 
 void LightSet::finish(float reach) {
   reach_ = reach;
+  crowded.clear();
+  crowded_bounds.makeEmpty();
+  for (const AreaEmitter& light : area) {
+    if (!light.flat || !light.crowded) continue;
+    crowded.resize(by_mesh.size());
+    crowded[light.mesh] = true;
+    const LightBounds bounds = bounds_of(light);
+    crowded_bounds.extendBy(bounds.lo);
+    crowded_bounds.extendBy(bounds.hi);
+  }
   near_.clear();
   far_.clear();
   place_.assign(size(), 0);

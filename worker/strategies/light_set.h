@@ -1,5 +1,7 @@
 #pragma once
 // All lights of a scene, and how they are found: from a hit of a ray, or by drawing.
+#include <Imath/ImathBox.h>
+
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -29,6 +31,11 @@ class LightSet {
     bool two_sided = false;      ///< then emitters come in pairs: front, back
   };
   std::vector<MeshLights> by_mesh;
+
+  /// Meshes with flat lights that something else is very close to (AreaEmitter::crowded), and the bounds of
+  /// these lights; none: the list is empty.
+  std::vector<bool> crowded;
+  Imath::Box3d crowded_bounds;
 
   /// To be called when the lists are complete. `reach` is the scene's diameter.
   void finish(float reach);

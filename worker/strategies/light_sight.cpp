@@ -83,7 +83,8 @@ bool LightSight::find_region(const ShadingPoint& point, const AreaEmitter& emitt
     region_.clear();
     return true;
   }
-  region_.reset(emitter.shape, Vec3d(point.above), Vec3d(point.transmits ? Vec3f(0) : point.normal));
+  region_.reset(emitter.shape, Vec3d(point.above), Vec3d(point.transmits ? Vec3f(0) : point.normal),
+                emitter.rounding);
   const size_t occluders = shaft_.listed();
   for (size_t i = 0; i < occluders && !region_.empty(); ++i)
     if (!region_.subtract(shaft_.triangle(i))) return false;

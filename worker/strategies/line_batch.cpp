@@ -31,6 +31,7 @@ void LineBatch::add_part(Side& side, size_t line, const Interval& range, const V
   query.b = Vec3f(l.a + ab * double(range.hi));
   query.light = {kNone, emitter.mesh, emitter.first_primitive};
   query.light_primitives = emitter.primitives;
+  query.plane = {l.n, emitter.rounding};
   side.queries.push_back(query);
   side.parts.push_back({line, range});
 }

@@ -93,7 +93,7 @@ class Timer {
   void trace_rays(std::span<const ShadingPoint> points) {
     size_t hits = 0;
     for (const ShadingPoint& p : points) {
-      for (const Vec3f& y : p.points) hits += geometry_.occluded(p.lines[0].x, y, counters);
+      for (const LightEnd& y : p.points) hits += geometry_.occluded(p.lines[0].x, y, counters);
     }
     sink = hits;
   }

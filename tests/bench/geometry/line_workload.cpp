@@ -71,9 +71,12 @@ class Generator {
     if (ha <= 0 && hb <= 0) return;
     if (ha < 0) a += (b - a) * (ha / (ha - hb));
     if (hb < 0) b += (a - b) * (hb / (hb - ha));
-    point.lines.push_back({x, a, b, light.id, light.primitives});
-    // Short of the light by a rounding, so that the light itself does not hide it.
-    point.points.push_back(x + (a + (b - a) * uniform() - x) * 0.9999f);
+    const Vec3d on_light = Vec3d(a) + (Vec3d(b) - Vec3d(a)) * double{uniform()};
+    const Vec3d normal = Vec3d(light.u).cross(Vec3d(light.v)).normalized();
+    const LightPlace place = geometry_.place_of(light.id, light.primitives, normal);
+    const LightPlane plane{normal, place.rounding};
+    point.lines.push_back({x, a, b, light.id, light.primitives, plane});
+    point.points.push_back({on_light, plane, light.id, light.primitives, place.crowded});
   }
 
   const Geometry& geometry_;

@@ -32,9 +32,9 @@ struct BenchScene {
 /// One shading point: lines towards one light and a point on each of them.
 struct ShadingPoint {
   std::vector<LineQuery> lines;
-  std::vector<Vec3f> points;  ///< one on each line
-  Vec3f normal{0};            ///< of the surface, on the side of x
-  size_t light = 0;           ///< into BenchScene::lights
+  std::vector<LightEnd> points;  ///< one on each line
+  Vec3f normal{0};               ///< of the surface, on the side of x
+  size_t light = 0;              ///< into BenchScene::lights
 };
 
 /// Camera hits in 16×16 tiles drawn at random, pixel by pixel within a tile, each with `lines` random chords

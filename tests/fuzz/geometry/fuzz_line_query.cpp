@@ -37,15 +37,23 @@ class Input {
   size_t size_;
 };
 
+/// A chord in a light's plane through p.
+LineQuery with_plane(LineQuery query, const Vec3f& p) {
+  const Vec3d normal = (Vec3d(query.b) - Vec3d(query.a)).cross(Vec3d(p) - Vec3d(query.a));
+  if (normal.length() > 0) query.plane = {normal.normalized(), kFloatRoundoff * std::abs(double{query.a.x})};
+  return query;
+}
+
 /// The input's own points as ends of chords and as what sees them: chords through vertices, along edges and in
 /// triangles' planes are the common case. Building the hierarchy takes far longer than asking it.
 std::vector<LineQuery> queries_of(const Vec3f& x, const Vec3f& a, const Vec3f& b, const TriangleMesh& mesh) {
-  constexpr size_t kMostPoints = 32;
+  constexpr size_t kMostPoints = 8;
   std::vector<LineQuery> queries{{x, a, b}, {x, b, a}};
   const size_t n = std::min(mesh.positions.size(), kMostPoints);
   for (size_t i = 0; i < n; ++i) {
     const Vec3f &p = mesh.positions[i], &next = mesh.positions[(i + 1) % n];
     queries.push_back({x, p, next});
+    queries.push_back(with_plane({x, a, b}, p));
     queries.push_back({p, a, b});
   }
   return queries;

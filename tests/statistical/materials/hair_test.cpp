@@ -164,7 +164,9 @@ TEST(Hair, HasNoHorizonAndNoCosine) {
     EXPECT_GT(bsdf.pdf(wo, wi), 0);
     const Rgb now = bsdf.scatter(wo, wi);
     EXPECT_GT(now.x, 0);
-    if (scattered_before) EXPECT_NEAR(now.x, scattered_before->x, 1e-5 * now.x);
+    if (scattered_before) {
+      EXPECT_NEAR(now.x, scattered_before->x, 1e-5 * now.x);
+    }
     scattered_before = now;
   }
 }

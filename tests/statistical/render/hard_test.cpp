@@ -8,7 +8,9 @@
 // enter the estimate all the same.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "tests/statistical/render/agreement.h"
 
@@ -28,6 +30,8 @@ const std::vector<std::string> kEveryStrategy = {"bsdf:4",
                                                  "line-area@37:1",
                                                  "line-sa@u:1",
                                                  "line-sa@v:1",
+                                                 "line-uniform@20:1",
+                                                 "line-analytic@0:1",
                                                  "bsdf:1+sa:1",
                                                  "area:1+line-sa@v:1",
                                                  "bsdf:1+line-sa@u:1/power",
@@ -54,6 +58,10 @@ TEST(HardScenes, CoplanarStacks) {
   test::expect_agreement(hard_scene("stacks"), kEveryStrategy, small(32));
 }
 
+TEST(HardScenes, CoversCloseToTheirLight) {
+  test::expect_agreement(hard_scene("covered"), kEveryStrategy, small(32));
+}
+
 TEST(HardScenes, LightAtAGrazingAngle) {
   std::vector<std::string> mixes = kEveryStrategy;
   mixes[0] = "bsdf:3+sa:1";  // a light under 1e-3 rad is not met by chance
@@ -61,12 +69,13 @@ TEST(HardScenes, LightAtAGrazingAngle) {
 }
 
 TEST(HardScenes, ReceiverTouchesTheLight) {
-  test::expect_agreement(hard_scene("touching"),
-                         {"bsdf:4", "sa:2", "line-sa@u:1", "line-sa@v:1", "area:1+sa:1", "bsdf:1+sa:1",
-                          "sa:1+line-area@0:1", "sa:1+line-area@90:1", "sa:1+line-area@37:1",
-                          "bsdf:1+line-sa@v:1", "sa:1+line-sa@u:1/free", "bsdf:1+line-sa@u:1/power",
-                          "visible-area:2", "bsdf:1+visible-area:1"},
-                         small(32));
+  test::expect_agreement(
+      hard_scene("touching"),
+      {"bsdf:4", "sa:2", "line-sa@u:1", "line-sa@v:1", "area:1+sa:1", "bsdf:1+sa:1", "sa:1+line-area@0:1",
+       "sa:1+line-area@90:1", "sa:1+line-area@37:1", "sa:1+line-uniform@20:1", "line-analytic@0:1",
+       "bsdf:1+line-sa@v:1", "sa:1+line-sa@u:1/free", "bsdf:1+line-sa@u:1/power", "visible-area:2",
+       "bsdf:1+visible-area:1"},
+      small(32));
 }
 
 TEST(HardScenes, LightInTheReceiversPlane) {
@@ -77,8 +86,9 @@ TEST(HardScenes, TinyLight) {
   test::expect_agreement(
       hard_scene("tiny"),
       {"area:1", "sa:1", "line-area@0:1", "line-area@90:1", "line-area@37:1", "line-sa@u:1", "line-sa@v:1",
-       "bsdf:1+sa:1", "bsdf:1+line-sa@u:1", "area:1+line-sa@v:1/power", "bsdf:1+line-area@0:1/free",
-       "line-area@0:1+line-sa@v:1/average", "visible-area:1", "area:1+visible-area:1"},
+       "line-uniform@20:1", "line-analytic@0:1", "bsdf:1+sa:1", "bsdf:1+line-sa@u:1",
+       "area:1+line-sa@v:1/power", "bsdf:1+line-area@0:1/free", "line-area@0:1+line-sa@v:1/average",
+       "visible-area:1", "area:1+visible-area:1"},
       small(16));
 }
 
@@ -92,7 +102,8 @@ TEST(HardScenes, TenThousandSlats) {
   how.height = 24;
   test::expect_agreement(hard_scene("blinds"),
                          {"bsdf:4", "area:4", "sa:4", "line-area@0:1", "line-area@90:1", "line-sa@u:1",
-                          "line-sa@v:1", "bsdf:1+line-sa@v:1", "visible-area:2", "bsdf:1+visible-area:1"},
+                          "line-sa@v:1", "line-uniform@20:1", "line-analytic@0:1", "bsdf:1+line-sa@v:1",
+                          "visible-area:2", "bsdf:1+visible-area:1"},
                          how);
 }
 
@@ -131,6 +142,53 @@ Material "matte" "rgb Kd" [ 0 0 0 ]
     EXPECT_LT(error, 0.02) << kEveryStrategy[m];
     EXPECT_EQ(rendered.costs[m].non_finite, 0u) << kEveryStrategy[m];
   }
+}
+
+/// A light with a cover `before` it that is larger than it, from all sides of which nothing may pass.
+std::string covered_light(const Vec3d& o, const Vec3d& u, const Vec3d& v, double before) {
+  const Vec3d n = u.cross(v).normalized();
+  const auto point = [](const Vec3d& p) {
+    char text[100];
+    std::snprintf(text, sizeof text, "%.9g %.9g %.9g ", double(float(p.x)), double(float(p.y)),
+                  double(float(p.z)));
+    return std::string(text);
+  };
+  const Vec3d c = o + n * before, eye = o + n * 0.6 + u * 3.0, at = o + n * 1.3;
+  std::string text = "LookAt " + point(eye) + point(at) + point(n) + R"(
+Camera "perspective" "float fov" 60
+WorldBegin
+Material "matte" "rgb Kd" [ 0.5 0.5 0.5 ]
+Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ] "point P" [ )";
+  for (const auto& [s, t] : {std::pair{-4, -4}, {5, -4}, {5, 5}, {-4, 5}})  // the receiver, across the way
+    text += point(o + n * 1.3 + u * double(s) + v * double(t) + n * (0.1 * s));
+  text += "]\nShape \"trianglemesh\" \"integer indices\" [ 0 1 2 0 2 3 ] \"point P\" [ ";
+  for (const auto& [s, t] : {std::pair{-3, -3}, {4, -3}, {4, 4}, {-3, 4}})
+    text += point(c + u * double(s) + v * double(t));
+  return text + "]\nAreaLightSource \"diffuse\" \"rgb L\" [ 100 100 100 ]\nShape \"quad\" \"point o\" [ " +
+         point(o) + "] \"vector u\" [ " + point(u) + "] \"vector v\" [ " + point(v) + "]\n";
+}
+
+/// Covers 1e-6 of the light's distance before it, or of its coordinates where those are larger.
+TEST(HardScenes, AClosedCoverCloseToItsLightIsBlack) {
+  const Vec3d u(0.6, 0, 0.8), v(0.32, 0.916515139, -0.24);
+  for (const Vec3d& o : {Vec3d(0.1, -0.2, 0.3), Vec3d(30, -20, 10)})
+    for (const bool oblique : {false, true}) {
+      const double before = 1e-6 * (2 + o.length());
+      const ScenePtr scene = test::load_text(oblique ? covered_light(o, u, v, before)
+                                                     : covered_light(o, {1, 0, 0}, {0, 1, 0}, before));
+      ASSERT_TRUE(scene);
+      const JobSpec spec = test::job(24, 24, kEveryStrategy, 8);
+      const test::Rendered rendered = test::render(*scene, spec);
+      for (size_t m = 0; m < spec.mixes.size(); ++m) {
+        const auto& rgb = rendered.images[m].rgb;
+        EXPECT_EQ(*std::max_element(rgb.begin(), rgb.end()), 0)
+            << kEveryStrategy[m] << " sees through a cover";
+      }
+      // Without it there is light: the test looks at something.
+      const ScenePtr open = test::load_text(covered_light(o, u, v, -1));
+      const auto lit = test::render(*open, test::job(24, 24, {"sa:1"}, 1)).images[0].rgb;
+      EXPECT_GT(*std::max_element(lit.begin(), lit.end()), 0);
+    }
 }
 
 TEST(HardScenes, AClosedBoxIsBlack) {

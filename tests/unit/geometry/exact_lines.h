@@ -39,6 +39,23 @@ class ExactChord {
     }
     t_norm_ = std::abs(t_.x) + std::abs(t_.y) + std::abs(t_.z);
     end_distance_ = std::max(largest(a_), largest(b_));
+    quick_x_ = Vec3d(query.x);
+    quick_n_ = Vec3d(n_);
+    quick_size_ = Vec3d(n_size_);
+  }
+
+  /// Quick and sure: all of the triangle lies on one side of the fan's plane, so that add() adds nothing.
+  bool misses(const Vec3f p[3]) const {
+    bool above = true, below = true;
+    for (int i = 0; i < 3; ++i) {
+      const Vec3d q = Vec3d(p[i]) - quick_x_;
+      const double g = quick_n_.dot(q);
+      const double magnitude =
+          quick_size_.x * std::abs(q.x) + quick_size_.y * std::abs(q.y) + quick_size_.z * std::abs(q.z);
+      above &= g > kQuickDoubt * magnitude;
+      below &= g < -kQuickDoubt * magnitude;
+    }
+    return above || below;
   }
 
   /// Adds what triangle p (scene coordinates) hides.
@@ -50,7 +67,7 @@ class ExactChord {
       g[i] = n_.dot(q[i]);
       Real magnitude = 0;
       for (int k = 0; k < 3; ++k) magnitude += n_size_[k] * std::abs(q[i][k]);
-      if (std::abs(g[i]) <= kDoubt * magnitude) return doubt(bounds);
+      if (std::abs(g[i]) <= kDoubt * magnitude) return doubt_within(p, bounds);
     }
     const bool side[3] = {g[0] < 0, g[1] < 0, g[2] < 0};
     if (side[0] == side[1] && side[0] == side[2]) return;
@@ -69,12 +86,32 @@ class ExactChord {
  private:
   /// Roundings of single precision within which a sign may come out either way.
   static constexpr Real kDoubt = 64 * static_cast<Real>(kFloatRoundoff);
+  static constexpr double kQuickDoubt = 128 * kFloatRoundoff;  // and double precision's own
 
   struct End {
     Real v = 0, tolerance = 0;
     bool behind = false, beyond = false;
   };
 
+  /// A triangle of which single precision need not know whether the plane cuts it: it hides nothing beyond
+  /// the rays to its corners, if these are in front of x, and nothing at all beyond the light.
+  void doubt_within(const Vec3f p[3], HiddenBounds& bounds) const {
+    Span v{std::numeric_limits<Real>::infinity(), -std::numeric_limits<Real>::infinity()};
+    const Vec3l beta = n_.cross(a_);
+    bool beyond = true;
+    for (int i = 0; i < 3; ++i) {
+      const Vec3l q = Vec3l(p[i]) - x_;
+      const Real t = t_.dot(q), unsure = kDoubt * t_norm_ * std::max(largest(q), end_distance_);
+      if (t <= 1024 * unsure) return doubt(bounds);
+      beyond &= t - light_ > unsure;
+      v.lo = std::min(v.lo, beta.dot(q) / t);
+      v.hi = std::max(v.hi, beta.dot(q) / t);
+    }
+    if (beyond) return;
+    ++bounds.doubtful;
+    constexpr Real kRoom = 0x1p-10L;  // the corners' v are right to that, at 1024 roundings from x
+    bounds.possibly.push_back({v.lo - kRoom * (1 + std::abs(v.lo)), v.hi + kRoom * (1 + std::abs(v.hi))});
+  }
   static Real largest(const Vec3l& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
   static void doubt(HiddenBounds& bounds) {
     ++bounds.doubtful;
@@ -154,6 +191,7 @@ class ExactChord {
 
   Vec3l x_, a_, b_, n_, t_, n_size_;
   Real light_, t_norm_, end_distance_;
+  Vec3d quick_x_, quick_n_, quick_size_;
 };
 
 /// The first place where a product's answer contradicts the bounds: a visible point that surely is hidden, or

@@ -11,6 +11,11 @@
 namespace penumbra::testing {
 namespace {
 
+/// A point on a light that is not there itself, facing down.
+LightEnd alone(const Vec3d& p) {
+  return {p, {{0, 0, -1}}, {}};
+}
+
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// Unit square at height z, facing up.
@@ -74,10 +79,10 @@ TEST(Geometry, AlphaIsForRaysOnly) {
   const Vec3f x(0, 0, 0);
   EXPECT_TRUE(geometry.occluded(x, {6, 0, 3}, counters));
   EXPECT_FALSE(geometry.occluded(x, {0, 6, 3}, counters));
-  EXPECT_TRUE(geometry.occluded_by_alpha(x, {6, 0, 3}, counters));
-  EXPECT_FALSE(geometry.occluded_by_alpha(x, {0, 6, 3}, counters));
+  EXPECT_TRUE(geometry.occluded_by_alpha(x, alone({6, 0, 3}), counters));
+  EXPECT_FALSE(geometry.occluded_by_alpha(x, alone({0, 6, 3}), counters));
   EXPECT_TRUE(geometry.occluded(x, {0.1f, 0.3f, 3}, counters));
-  EXPECT_FALSE(geometry.occluded_by_alpha(x, {0.1f, 0.3f, 3}, counters));
+  EXPECT_FALSE(geometry.occluded_by_alpha(x, alone({0.1f, 0.3f, 3}), counters));
   const LineQuery query{x, {6, 1, 3}, {9, 1, 3}};
   std::vector<IntervalSet> visible;
   geometry.visible({&query, 1}, visible, counters);
@@ -89,7 +94,7 @@ TEST(Geometry, NothingAtAll) {
   QueryCounters counters;
   EXPECT_FALSE(geometry.has_alpha());
   EXPECT_FALSE(geometry.occluded({0, 0, 0}, {0, 0, 1}, counters));
-  EXPECT_FALSE(geometry.occluded_by_alpha({0, 0, 0}, {0, 0, 1}, counters));
+  EXPECT_FALSE(geometry.occluded_by_alpha({0, 0, 0}, alone({0, 0, 1}), counters));
   const LineQuery query{{0, 0, 0}, {-1, 0, 2}, {1, 0, 2}};
   std::vector<IntervalSet> visible;
   geometry.visible({&query, 1}, visible, counters);

@@ -24,7 +24,8 @@ std::string text(const IntervalSet& set) {
 IntervalSet by_every_triangle(const LineBvh& bvh, const TriangleMesh& mesh, const LineQuery& query) {
   IntervalSet visible;
   const Vec3d x(query.x);
-  const LineFan fan = make_fan(x, Vec3d(query.a) - x, Vec3d(query.b) - x, bvh.world.reach(x));
+  const LineFan fan =
+      make_fan(x, Vec3d(query.a) - x, Vec3d(query.b) - x, bvh.world.reach(x), chord_plane(query));
   if (fan.degenerate) return visible;
   visible.reset();
   for (size_t i = 0; i < mesh.triangles(); ++i) {
@@ -83,6 +84,9 @@ TEST(LinePaths, AgreeInDegeneratePositions) {
     if (random.uniform() < 0.5f) query.b = vertex();
     if (random.uniform() < 0.3f) query.x = vertex();
     if (random.uniform() < 0.2f) query.x.z = query.a.z = query.b.z = 0;
+    // A light's plane through the chord and a vertex: what is in it hides nothing.
+    const Vec3d normal = (Vec3d(query.b) - Vec3d(query.a)).cross(Vec3d(vertex()) - Vec3d(query.a));
+    if (random.uniform() < 0.5f && normal.length() > 0) query.plane = {normal.normalized(), 0x1p-24};
     const IntervalSet expected = by_every_triangle(bvh, mesh, query);
     ASSERT_EQ(visible_by(bvh, LinePath::kScalar, query), expected) << i;
     for (const LinePath path : vector_paths()) ASSERT_EQ(visible_by(bvh, path, query), expected) << i;

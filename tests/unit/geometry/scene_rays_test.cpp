@@ -6,6 +6,7 @@
 
 #include "proto/status.h"
 #include "tests/bench/geometry/bench_scene.h"
+#include "tests/bench/geometry/exact_scene.h"
 
 namespace penumbra::bench {
 namespace {
@@ -49,6 +50,22 @@ TEST_P(SceneRays, VisibleFractionMatchesRays) {
   EXPECT_LE(beyond, 4);
   std::printf("%s: mean difference %.2e, %d chords beyond the sampling tolerance\n", GetParam(), sum / 2000,
               beyond);
+}
+
+/// A sample of what `bench_line_exact` does for 1e5 chords.
+TEST(SceneExact, EveryTriangleOfTheCornellBox) {
+  const char* folder = std::getenv("PENUMBRA_SCENES_DIR");
+  if (folder == nullptr) GTEST_SKIP() << "PENUMBRA_SCENES_DIR is not set";
+  const auto scene = load_bench_scene(std::string(folder) + "/cornell-box/cornell-box.pbrt");
+  ASSERT_TRUE(scene.ok()) << message_of(scene.status());
+  const auto geometry = Geometry::build(scene->inputs(), {}, {}, 1);
+  ASSERT_TRUE(geometry.ok());
+  const Exactness e = compare_with_all(*geometry, *scene, 5000, 4);
+  EXPECT_EQ(e.chords, 5000u);
+  EXPECT_EQ(e.wrong, 0u);
+  EXPECT_LT(e.doubtful,
+            e.chords / 2);  // its chords lie along the walls' directions, and so in planes of vertices
+  EXPECT_GT(e.partly, e.chords / 100);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, SceneRays,

@@ -62,7 +62,12 @@ class Comparison {
     EXPECT_EQ(shaft_.listed() > 0, shaft_.content() == ShaftContent::kFew);
     std::vector<LineQuery> queries;
     for (int i = 0; i < 6; ++i) {
-      LineQuery query{x, point(light), point(light), light.polygon.light, light.polygon.light_primitives};
+      LineQuery query{x,
+                      point(light),
+                      point(light),
+                      light.polygon.light,
+                      light.polygon.light_primitives,
+                      {light.polygon.normal}};
       if (above(horizon, x, query.a, query.b)) queries.push_back(query);
     }
     std::vector<IntervalSet> alone, together;
@@ -72,10 +77,12 @@ class Comparison {
     for (size_t i = 0; i < queries.size(); ++i) ASSERT_EQ(together[i], alone[i]) << name() << ", line " << i;
     tally.lines += static_cast<int>(queries.size());
     for (int i = 0; i < 6; ++i) {
-      // Short of the light, so that its own triangles do not hide it.
-      Vec3f y = point(light);
-      y += (x - y) * 1e-3f;
-      if (horizon != Vec3f(0, 0, 0) && horizon.dot(y - x) < 0) continue;
+      const Vec2f at = random_parameters(random_, light.triangle);
+      const LightEnd y{Vec3d(light.o) + Vec3d(light.u) * double{at.x} + Vec3d(light.v) * double{at.y},
+                       {light.polygon.normal},
+                       light.polygon.light,
+                       light.polygon.light_primitives};
+      if (horizon != Vec3f(0, 0, 0) && Vec3d(horizon).dot(y.p - Vec3d(x)) < 0) continue;
       ASSERT_EQ(geometry_.occluded(shaft_, x, y, counters_), geometry_.occluded(x, y, counters_)) << name();
       ++tally.rays;
     }
