@@ -58,6 +58,19 @@ GeometryHandle make_triangles(RTCDevice device, const TriangleMesh& mesh, const 
   return geometry;
 }
 
+/// Embree's filter: what it meets of a tube counts if double precision meets it too. Single precision puts the side of a
+/// segment of length L off by about u L²/r, which for the strand that a ray has just left is more than its offset.
+void tube_filter(const RTCFilterFunctionNArguments* arguments) {
+  PENUMBRA_CHECK(arguments->N == 1);
+  const auto& tubes = *static_cast<const Tubes*>(arguments->geometryUserPtr);
+  const auto& ray = *reinterpret_cast<const RTCRay*>(arguments->ray);
+  const auto* hit = reinterpret_cast<const RTCHit*>(arguments->hit);
+  const Vec3d x(ray.org_x, ray.org_y, ray.org_z), d(ray.dir_x, ray.dir_y, ray.dir_z);
+  // The ray's tfar is the hit's distance here, which is off by less than this.
+  const Vec3d end = x + d * (ray.tfar * (1 + 0x1p-10));
+  if (!meets(TubeSegment(&tubes.points[tubes.segments[hit->primID]]), x, end)) arguments->valid[0] = 0;
+}
+
 /// Chains of cone-spheres; the inside of a chain is no surface.
 GeometryHandle make_tubes(RTCDevice device, const Tubes& tubes) {
   GeometryHandle geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE));
@@ -75,6 +88,9 @@ GeometryHandle make_tubes(RTCDevice device, const Tubes& tubes) {
     flags[i] = static_cast<uint8_t>((left ? RTC_CURVE_FLAG_NEIGHBOR_LEFT : 0) |
                                     (right ? RTC_CURVE_FLAG_NEIGHBOR_RIGHT : 0));
   }
+  rtcSetGeometryUserData(geometry.get(), const_cast<Tubes*>(&tubes));
+  rtcSetGeometryIntersectFilterFunction(geometry.get(), tube_filter);
+  rtcSetGeometryOccludedFilterFunction(geometry.get(), tube_filter);
   rtcCommitGeometry(geometry.get());
   return geometry;
 }

@@ -81,11 +81,12 @@ TEST(TubeSurface, AShadowRayLeavesItsOwnTube) {
           const OneTube one(radius, taper, far_away, facing);
           QueryCounters counters;
           int own = 0, asked = 0;
-          each_hit(one, [&](const SurfacePoint& point, const Ray&, const Hit&, Draw& draw) {
+          each_hit(one, [&](const SurfacePoint& point, const Ray&, const Hit& hit, Draw& draw) {
             Vec3f w(draw.direction());
-            // Tapered, or seen flat: the plane at right angles to the axis' normal touches the tube's
-            // widening part.
-            if (taper < 1 && std::abs(w.dot(point.ng)) < 0.5 * radius * 2) return;
+            // A cone shades what leaves it by less than its opening; what goes into a cap stays in the tube.
+            const double opening = radius * (1 - taper) / 1.13;
+            if (std::abs(w.dot(point.ng)) < 2.1 * opening) return;
+            if (!facing && !(hit.u > 0 && hit.u < 1) && w.dot(point.ng) < 0) return;
             ++asked;
             own += one.geometry->occluded(point.offset(w), point.offset(w) + w * 10.f, counters);
           });
@@ -97,7 +98,8 @@ TEST(TubeSurface, AShadowRayLeavesItsOwnTube) {
 TEST(TubeSurface, HasPbrtsParametersAndTheHairsOffset) {
   const OneTube one(0.05, 1, 0, false);
   const struct { Vec3d axis; } frame{Vec3d(1, 0.5, -0.2).normalized()};
-  each_hit(one, [&](const SurfacePoint& point, const Ray& ray, const Hit&, Draw&) {
+  each_hit(one, [&](const SurfacePoint& point, const Ray& ray, const Hit& hit, Draw&) {
+    if (!(hit.u > 0 && hit.u < 1)) return;  // a cap
     const Vec3d p(point.p), along = frame.axis * p.dot(frame.axis);
     EXPECT_NEAR((p - along).length(), 0.05, 1e-6) << "on the tube";
     EXPECT_NEAR(point.ng.dot(point.dpdu), 0, 1e-5);
