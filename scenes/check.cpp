@@ -3,6 +3,7 @@
 #include <string_view>
 #include <unordered_set>
 
+#include "scenes/curve.h"
 #include "scenes/diagnostics.h"
 #include "scenes/mesh.h"
 #include "scenes/ply.h"
@@ -22,8 +23,9 @@ class Checker {
     if (shape.type == "sphere") return sphere_of(shape, description_).status();
     if (shape.type == "disk") return disk_of(shape, description_).status();
     if (shape.type == "cylinder") return cylinder_of(shape, description_).status();
-    if (!has_mesh(shape)) return absl::OkStatus();
     std::vector<std::string> warnings;  // the renderer gives them
+    if (shape.type == "curve") return curve_of(shape, description_, files_, warnings).status();
+    if (!has_mesh(shape)) return absl::OkStatus();
     return make_mesh(shape, description_, files_, warnings).status();
   }
 

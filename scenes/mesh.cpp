@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "scenes/curve.h"
 #include "scenes/mesh_makers.h"
 
 namespace penumbra {
@@ -25,9 +26,13 @@ constexpr Maker kMakers[] = {
     {"cylinder", make_cylinder},
 };
 
-const Maker* find_maker(std::string_view type) {
+/// Curves that are no ribbons are no meshes either.
+constexpr Maker kRibbon{"curve", make_ribbon};
+
+const Maker* find_maker(const ShapeEntity& shape) {
+  if (has_ribbon(shape)) return &kRibbon;
   for (const Maker& maker : kMakers)
-    if (maker.type == type) return &maker;
+    if (maker.type == shape.type) return &maker;
   return nullptr;
 }
 
@@ -88,12 +93,12 @@ void drop_degenerate(TriangleMesh& mesh, const ShapeEntity& shape, const MeshCon
 }  // namespace
 
 bool has_mesh(const ShapeEntity& shape) {
-  return find_maker(shape.type) != nullptr;
+  return find_maker(shape) != nullptr;
 }
 
 absl::StatusOr<TriangleMesh> make_mesh(const ShapeEntity& shape, const SceneDescription& description,
                                        const SceneFiles& files, std::vector<std::string>& warnings) {
-  const Maker* const maker = find_maker(shape.type);
+  const Maker* const maker = find_maker(shape);
   PENUMBRA_CHECK(maker);
   const MeshContext context{description, files, warnings};
   ASSIGN_OR_RETURN(TriangleMesh mesh, maker->make(shape, context));

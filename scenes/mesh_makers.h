@@ -36,5 +36,6 @@ MeshOr make_loop_subdivision(const ShapeEntity& shape, const MeshContext& contex
 MeshOr make_sphere(const ShapeEntity& shape, const MeshContext& context);
 MeshOr make_disk(const ShapeEntity& shape, const MeshContext& context);
 MeshOr make_cylinder(const ShapeEntity& shape, const MeshContext& context);
+MeshOr make_ribbon(const ShapeEntity& shape, const MeshContext& context);
 
 }  // namespace penumbra

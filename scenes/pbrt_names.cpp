@@ -22,8 +22,8 @@ constexpr Name kShapes[] = {
     {"disk", kYes},
     {"cylinder", kYes},
     {"loopsubdiv", kYes},
+    {"curve", kYes},
     {"cone", kNo},
-    {"curve", kNo},
     {"heightfield", kNo},
     {"hyperboloid", kNo},
     {"nurbs", kNo},
@@ -59,7 +59,7 @@ constexpr Name kMaterials[] = {{"", kYes},
                                {"disney", kNo},
                                {"fourier", kNo},
                                {"measured", kNo},
-                               {"hair", kNo},
+                               {"hair", kYes},
                                {"subsurface", kNo},
                                {"kdsubsurface", kNo}};
 

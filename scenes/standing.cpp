@@ -4,6 +4,7 @@
 
 #include "proto/status.h"
 #include "scenes/animated_transform.h"
+#include "scenes/curve.h"
 #include "scenes/each_shape.h"
 
 namespace penumbra {
@@ -43,13 +44,14 @@ bool anything_moves(const SceneDescription& description) {
 }
 
 bool can_move(const ShapeEntity& shape) {
-  return shape.area_light < 0 && !bounds_a_medium(shape);
+  return shape.area_light < 0 && !bounds_a_medium(shape) && !has_tubes(shape);
 }
 
 bool can_move(const InstanceEntity& instance, const SceneDescription& description) {
   if (instance.object < 0) return false;
   const auto& shapes = description.objects[static_cast<size_t>(instance.object)].shapes;
-  return std::none_of(shapes.begin(), shapes.end(), bounds_a_medium);
+  return std::none_of(shapes.begin(), shapes.end(),
+                      [](const ShapeEntity& shape) { return bounds_a_medium(shape) || has_tubes(shape); });
 }
 
 absl::StatusOr<SceneDescription> standing(const SceneDescription& description, bool movers) {

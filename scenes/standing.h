@@ -8,8 +8,8 @@ namespace penumbra {
 /// Does the camera, a shape or an instance have two placements?
 bool anything_moves(const SceneDescription& description);
 
-/// Can its motion be rendered? Not that of boundaries of media (nor of instances of such), nor of what
-/// emits, nor within an object.
+/// Can its motion be rendered? Not that of boundaries of media or of curves that are tubes (nor of instances
+/// of such), nor of what emits, nor within an object.
 bool can_move(const ShapeEntity& shape);
 bool can_move(const InstanceEntity& instance, const SceneDescription& description);
 

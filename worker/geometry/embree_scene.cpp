@@ -13,6 +13,7 @@
 #include "worker/geometry/light_end.h"
 #include "worker/geometry/moving_instance.h"
 #include "worker/geometry/pose.h"
+#include "worker/geometry/tube.h"
 
 namespace penumbra {
 namespace {
@@ -59,6 +60,44 @@ GeometryHandle make_triangles(RTCDevice device, const TriangleMesh& mesh, const 
   return geometry;
 }
 
+/// Embree's filter: what it meets of a tube counts if double precision meets it too. Single precision puts
+/// the side of a segment of length L off by about u L²/r, which for the strand that a ray has just left is
+/// more than its offset.
+void tube_filter(const RTCFilterFunctionNArguments* arguments) {
+  PENUMBRA_CHECK(arguments->N == 1);
+  const auto& tubes = *static_cast<const Tubes*>(arguments->geometryUserPtr);
+  const auto& ray = *reinterpret_cast<const RTCRay*>(arguments->ray);
+  const auto* hit = reinterpret_cast<const RTCHit*>(arguments->hit);
+  const Vec3d x(ray.org_x, ray.org_y, ray.org_z), d(ray.dir_x, ray.dir_y, ray.dir_z);
+  // The ray's tfar is the hit's distance here, which is off by less than this.
+  const Vec3d end = x + d * (ray.tfar * (1 + 0x1p-10));
+  if (!meets(TubeSegment(&tubes.points[tubes.segments[hit->primID]]), x, end)) arguments->valid[0] = 0;
+}
+
+/// Chains of cone-spheres; the inside of a chain is no surface.
+GeometryHandle make_tubes(RTCDevice device, const Tubes& tubes) {
+  GeometryHandle geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE));
+  rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
+                             tubes.points.data(), 0, sizeof(Imath::V4f), tubes.points.size());
+  rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, tubes.segments.data(),
+                             0, sizeof(uint32_t), tubes.segments.size());
+  auto* flags = static_cast<uint8_t*>(rtcSetNewGeometryBuffer(
+      geometry.get(), RTC_BUFFER_TYPE_FLAGS, 0, RTC_FORMAT_UCHAR, sizeof(uint8_t), tubes.segments.size()));
+  if (flags == nullptr) return nullptr;
+  const std::vector<uint32_t>& first = tubes.segments;
+  for (size_t i = 0; i < first.size(); ++i) {
+    const bool left = i > 0 && first[i - 1] + 1 == first[i];
+    const bool right = i + 1 < first.size() && first[i] + 1 == first[i + 1];
+    flags[i] = static_cast<uint8_t>((left ? RTC_CURVE_FLAG_NEIGHBOR_LEFT : 0) |
+                                    (right ? RTC_CURVE_FLAG_NEIGHBOR_RIGHT : 0));
+  }
+  rtcSetGeometryUserData(geometry.get(), const_cast<Tubes*>(&tubes));
+  rtcSetGeometryIntersectFilterFunction(geometry.get(), tube_filter);
+  rtcSetGeometryOccludedFilterFunction(geometry.get(), tube_filter);
+  rtcCommitGeometry(geometry.get());
+  return geometry;
+}
+
 Scene make_scene(RTCDevice device) {
   Scene scene(rtcNewScene(device));
   rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
@@ -96,12 +135,19 @@ bool ray_hits(RTCScene scene, RTCIntersectContext& context, const Vec3f& x, cons
 /// The scene's own triangles, for the filter that judges hits close to a light.
 struct Surfaces {
   std::vector<const TriangleMesh*> meshes;
+  std::vector<const Tubes*> tubes;  ///< per mesh, null for triangles; empty if there are none
   std::vector<InstanceInput> instances;
   float extent = 0;  ///< Σ of the three extents of all of them
 
   const Vec3f& vertex(uint32_t mesh, uint32_t primitive, int corner) const {
     const TriangleMesh& m = *meshes[mesh];
     return m.positions[m.indices[3 * size_t{primitive} + static_cast<size_t>(corner)]];
+  }
+  bool is_tube(const PrimitiveId& id) const {
+    return !tubes.empty() && id.instance == kNone && tubes[id.mesh] != nullptr;
+  }
+  TubeSegment segment(const PrimitiveId& id) const {
+    return TubeSegment(&tubes[id.mesh]->points[tubes[id.mesh]->segments[id.primitive]]);
   }
   /// In the world, at a time.
   void triangle(const PrimitiveId& id, float time, Vec3d p[3]) const {
@@ -158,8 +204,13 @@ void approach_filter(const RTCFilterFunctionNArguments* arguments) {
   }
   const Surfaces& all = *context.surfaces;
   const auto instance = placed ? hit.instID[0] - static_cast<uint32_t>(all.meshes.size()) : kNone;
+  const PrimitiveId id{instance, hit.geomID, hit.primID};
+  if (all.is_tube(id)) {
+    if (!meets(all.segment(id), Vec3d(ray.org_x, ray.org_y, ray.org_z), end.p)) arguments->valid[0] = 0;
+    return;
+  }
   Vec3d surface[3];
-  all.triangle({instance, hit.geomID, hit.primID}, end.time, surface);
+  all.triangle(id, end.time, surface);
   if (!context.approach.hides(surface)) arguments->valid[0] = 0;
 }
 
@@ -192,11 +243,18 @@ bool find_neighbour(RTCPointQueryFunctionArguments* arguments) {
     return false;
   const auto meshes = static_cast<uint32_t>(looking.surfaces->meshes.size());
   if (!placed && mesh >= meshes) return false;  // an instance that moves: its boxes are asked apart
-  Vec3d p[3];
-  looking.surfaces->triangle({placed ? arguments->context->instID[0] - meshes : kNone, mesh, primitive}, 0,
-                             p);
+  const PrimitiveId id{placed ? arguments->context->instID[0] - meshes : kNone, mesh, primitive};
   Imath::Box3d bounds;
-  for (const Vec3d& corner : p) bounds.extendBy(corner);
+  if (looking.surfaces->is_tube(id)) {
+    const TubeSegment segment = looking.surfaces->segment(id);
+    for (const double w : {0., 1.})
+      for (const double side : {-1., 1.})
+        bounds.extendBy(segment.centre(w) + Vec3d(side * segment.radius(w)));
+  } else {
+    Vec3d p[3];
+    looking.surfaces->triangle(id, 0, p);
+    for (const Vec3d& corner : p) bounds.extendBy(corner);
+  }
   if (!bounds.intersects(looking.box)) return false;
   looking.found = true;
   arguments->query->radius = 0;  // enough is known
@@ -287,7 +345,13 @@ absl::StatusOr<std::unique_ptr<EmbreeScene>> EmbreeScene::build(std::span<const 
       alpha = parts.alphas.emplace_back(std::make_unique<AlphaTest>(meshes[m].alpha)).get();
       tested[m] = parts.has_alpha = true;
     }
-    opaque_and_alpha[m] = make_triangles(parts.device.get(), *meshes[m].mesh, alpha);
+    if (meshes[m].tubes != nullptr) {
+      parts.surfaces.tubes.resize(meshes.size());
+      parts.surfaces.tubes[m] = meshes[m].tubes;
+      opaque_and_alpha[m] = make_tubes(parts.device.get(), *meshes[m].tubes);
+    } else {
+      opaque_and_alpha[m] = make_triangles(parts.device.get(), *meshes[m].mesh, alpha);
+    }
     if (!opaque_and_alpha[m]) {
       return make_status(absl::StatusCode::kResourceExhausted, "no memory for a mesh of {} triangles",
                          meshes[m].mesh->triangles());
@@ -331,6 +395,7 @@ std::optional<Hit> EmbreeScene::intersect(const Ray& ray) const {
   hit.u = query.hit.u;
   hit.v = query.hit.v;
   hit.time = ray.time;
+  if (parts_->surfaces.is_tube(hit.id)) refine(parts_->surfaces.segment(hit.id), ray, hit);
   return hit;
 }
 
@@ -338,10 +403,13 @@ void EmbreeScene::beside(const Ray& ray, const Hit& first, const std::vector<boo
                          std::vector<Meeting>& out) const {
   out.clear();
   const Surfaces& all = parts_->surfaces;
-  Vec3d p[3];
-  all.triangle(first.id, ray.time, p);
-  const Vec3d n = (p[1] - p[0]).cross(p[2] - p[0]).normalized(),
-              way = Vec3d(ray.direction) * double{first.distance};
+  const Vec3d way = Vec3d(ray.direction) * double{first.distance};
+  Vec3d n = way.normalized();  // a tube may lie along any plane: the least doubt will do
+  if (!all.is_tube(first.id)) {
+    Vec3d p[3];
+    all.triangle(first.id, ray.time, p);
+    n = (p[1] - p[0]).cross(p[2] - p[0]).normalized();
+  }
   const Vec3d end = Vec3d(ray.origin) + way;
   const auto norm1 = [](const Vec3d& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
   const float doubt = LightApproach::doubt(static_cast<float>(norm1(end) + norm1(way)) + all.extent,

@@ -11,6 +11,7 @@
 
 #include "absl/status/statusor.h"
 #include "scenes/animated_transform.h"
+#include "scenes/curve.h"
 #include "scenes/mesh.h"
 #include "worker/geometry/intervals.h"
 #include "worker/geometry/light_plane.h"
@@ -27,6 +28,7 @@ struct MeshInput {
   const TriangleMesh* mesh = nullptr;  ///< world space, or object space if it belongs to an object
   AlphaTest alpha;                     ///< empty: opaque
   bool visible = true;                 ///< false: no ray and no line meets it (material "interface")
+  const Tubes* tubes = nullptr;        ///< in the world; then the mesh is empty, and primitives are segments
 };
 
 /// Meshes [first,last) that are placed together by instances, in object space.
@@ -56,7 +58,7 @@ struct Ray {
 struct Hit {
   PrimitiveId id;
   float distance = 0;  ///< along the ray, in lengths of its direction
-  float u = 0, v = 0;  ///< barycentric: p = (1-u-v) p0 + u p1 + v p2
+  float u = 0, v = 0;  ///< barycentric: p = (1-u-v) p0 + u p1 + v p2; on tubes see tube.h
   float time = 0;      ///< the ray's
 };
 

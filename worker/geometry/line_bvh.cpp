@@ -225,6 +225,30 @@ absl::Status place_instances(LineBvh& bvh, std::span<const InstanceInput> instan
   return absl::OkStatus();
 }
 
+absl::Status build_tubes(std::span<const MeshInput> meshes, TreeBuilder& builder, LineTubes& tubes) {
+  std::vector<Box> boxes;
+  for (const MeshInput& input : meshes) {
+    if (input.tubes == nullptr || !input.visible) continue;
+    for (const uint32_t first : input.tubes->segments) {
+      const Imath::V4f* p = &input.tubes->points[first];
+      Box box = empty_box();
+      for (int end = 0; end < 2; ++end) {
+        const Vec3f centre(p[end].x, p[end].y, p[end].z), radius(p[end].w);
+        extend(box, centre - radius);
+        extend(box, centre + radius);
+      }
+      // The sums above are rounded; set_bounds() widens once more, for its own rounding.
+      for (int k = 0; k < 3; ++k) {
+        box.lo[k] = std::nextafter(box.lo[k], -kInfinity);
+        box.hi[k] = std::nextafter(box.hi[k], kInfinity);
+      }
+      boxes.push_back(box);
+      tubes.segments.push_back(p);
+    }
+  }
+  return build_tree(boxes, nullptr, builder, tubes.tree);
+}
+
 size_t bytes_of(const LineTree& tree) {
   return tree.nodes.size() * sizeof(LineNode) + tree.blocks.size() * sizeof(TriangleBlock);
 }
@@ -232,10 +256,16 @@ size_t bytes_of(const LineTree& tree) {
 }  // namespace
 
 absl::Status check_line_input(std::span<const MeshInput> meshes, std::span<const InstanceInput> instances) {
-  uint64_t triangles = 0;
-  for (const MeshInput& m : meshes) triangles += m.mesh->triangles();
+  uint64_t triangles = 0, segments = 0;
+  for (const MeshInput& m : meshes) {
+    triangles += m.mesh->triangles();
+    segments += m.tubes == nullptr ? 0 : m.tubes->segments.size();
+  }
   if (triangles >= kNone)
     return make_status(absl::StatusCode::kResourceExhausted, "more than {} triangles in one scene", kNone);
+  if (segments >= kNone)
+    return make_status(absl::StatusCode::kResourceExhausted, "curves of more than {} segments in one scene",
+                       kNone);
   for (size_t i = 0; i < instances.size(); ++i) {
     const double det = instances[i].to_world.determinant();
     if (!std::isfinite(det) || det == 0) return invalid_input("instance {}: its transform is singular", i);
@@ -277,17 +307,19 @@ absl::StatusOr<LineBvh> build_line_bvh(std::span<const MeshInput> meshes,
         build_over(bvh.objects[i], [&](size_t m) { return m >= o.first_mesh && m < o.last_mesh; }));
   }
   RETURN_IF_ERROR(place_instances(bvh, instances, builder));
+  RETURN_IF_ERROR(build_tubes(meshes, builder, bvh.tubes));
   return bvh;
 }
 
 uint32_t LineBvh::depth() const {
   uint32_t below = 0;
   for (const LineTree& tree : objects) below = std::max(below, tree.depth);
-  return std::max(world.depth, instance_tree.depth + below);
+  return std::max({world.depth, instance_tree.depth + below, tubes.tree.depth});
 }
 
 size_t LineBvh::bytes() const {
   size_t sum = bytes_of(world) + bytes_of(instance_tree) + instances.size() * sizeof(LineInstance);
+  sum += bytes_of(tubes.tree) + tubes.segments.size() * sizeof(tubes.segments[0]);
   for (const LineTree& tree : objects) sum += bytes_of(tree);
   return sum;
 }

@@ -57,12 +57,19 @@ struct LineInstance {
   }
 };
 
+/// Segments of tubes, in the world; leaves are single segments.
+struct LineTubes {
+  LineTree tree;
+  std::vector<const Imath::V4f*> segments;  ///< the two points of each begin here
+};
+
 struct LineBvh {
   uint64_t id = 0;  ///< of this hierarchy, in this process
   LineTree world;
   std::vector<LineTree> objects;
   LineTree instance_tree;  ///< leaves are single instances
   std::vector<LineInstance> instances;
+  LineTubes tubes;
   std::vector<uint32_t> first_triangle;  ///< of each mesh, in a numbering of all meshes' triangles
 
   /// Nodes on the longest path, through instances as well.

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "worker/geometry/line_query.h"
+#include "worker/geometry/tube.h"
 
 namespace penumbra {
 namespace {
@@ -46,6 +47,7 @@ class Walk {
     visible_.reset();
     const LightPlane plane = chord_plane(query_);
     tree(bvh_.world, x, a, b, plane, excluded_in(bvh_, query_, kNone));
+    if (!bvh_.tubes.tree.nodes.empty()) tubes(x, a, b);
     if (bvh_.instance_tree.nodes.empty()) return;
     const LineFan fan = make_fan(x, a, b, bvh_.instance_tree.reach(x), plane);
     leaves(bvh_.instance_tree, fan, [&](uint32_t instance) {
@@ -61,6 +63,15 @@ class Walk {
   }
 
  private:
+  void tubes(const Vec3d& x, const Vec3d& a, const Vec3d& b) {
+    const TubeFan tube_fan(x, a, b);
+    leaves(bvh_.tubes.tree, make_fan(x, a, b, bvh_.tubes.tree.reach(x)), [&](uint32_t segment) {
+      const Interval hidden = hidden_by_tube(tube_fan, TubeSegment(bvh_.tubes.segments[segment]));
+      visible_.subtract(hidden.lo, hidden.hi);
+      ++counters_.triangles_tested;
+    });
+  }
+
   template <class UseLeaf>
   void leaves(const LineTree& tree, const LineFan& fan, UseLeaf use) {
     const BoxTest test(fan, tree);

@@ -7,6 +7,7 @@
 #include "worker/geometry/fan_block.h"
 #include "worker/geometry/fan_boxes.h"
 #include "worker/geometry/line_query.h"
+#include "worker/geometry/tube.h"
 #include "worker/geometry/visible_set.h"
 
 namespace penumbra {
@@ -128,6 +129,7 @@ class LineWalk {
   void finish(IntervalSet& out) {
     out.clear();
     if (fan_.degenerate) return;  // a chord seen end on has no width to be seen by
+    if (!bvh().tubes.tree.nodes.empty() && !visible_.empty()) tubes();
     if (!bvh().instance_tree.nodes.empty() && !visible_.empty()) placed_objects();
     // A neighbour of a lit point is mostly lit: then there is nothing to try first.
     context_->workspace.occluder_tree = widest_ > 0 && occluder_world_ ? bvh().id : 0;
@@ -137,6 +139,26 @@ class LineWalk {
 
  private:
   const LineBvh& bvh() const { return context_->bvh; }
+
+  void tubes() {
+    const LineTubes& tubes = bvh().tubes;
+    const LineFan fan = make_fan(x_, a_, b_, tubes.tree.reach(x_));
+    const TubeFan tube_fan(x_, a_, b_);
+    TreeWalk walk;
+    walk.start(tubes.tree, fan, visible_, buffers_->stack.data());
+    while (!walk.done()) {
+      const int found = walk.step(buffers_->leaves.data(), context_->counters);
+      context_->counters.triangles_tested += static_cast<uint64_t>(found);
+      bool changed = false;
+      for (int i = 0; i < found; ++i) {
+        const Interval hidden = hidden_by_tube(tube_fan, TubeSegment(tubes.segments[buffers_->leaves[i]]));
+        if (!(hidden.lo < hidden.hi)) continue;
+        changed |= visible_.subtract(hidden.lo, hidden.hi);
+        if (visible_.empty()) return;
+      }
+      if (changed) walk.narrow(visible_);
+    }
+  }
 
   void placed_objects() {
     const LineFan fan = make_fan(x_, a_, b_, bvh().instance_tree.reach(x_), plane_);

@@ -138,6 +138,11 @@ class ShaftWalk {
       find_leaves(bvh_.instance_tree, workspace.lines[0].stack.data());
       if (leaf_count_ != 0) return ShaftContent::kMany;
     }
+    // Nor are tubes.
+    if (!bvh_.tubes.tree.nodes.empty()) {
+      find_leaves(bvh_.tubes.tree, workspace.lines[0].stack.data());
+      if (leaf_count_ != 0) return ShaftContent::kMany;
+    }
     find_leaves(bvh_.world, workspace.lines[0].stack.data());
     if (leaf_count_ > kMostLeaves) return ShaftContent::kMany;
     for (int i = 0; i < leaf_count_; ++i) {

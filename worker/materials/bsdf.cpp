@@ -29,7 +29,11 @@ struct Bsdf::Pair {
   Vec3d wo, wi;
   bool reflects = false;   ///< both on one side of the geometric surface
   bool transmits = false;  ///< on opposite sides; neither where one of them lies in a surface
-  bool serves(bool lobe_transmits) const { return lobe_transmits ? transmits : reflects; }
+  template <class L>
+  bool serves(const L&) const {
+    if constexpr (kFibre<L>) return reflects || transmits;
+    return L::kTransmits ? transmits : reflects;
+  }
 };
 
 Bsdf::Bsdf(const SurfacePoint& point, const Vec3f& ns) : ng_(point.ng), ns_(ns) {
@@ -89,7 +93,7 @@ Rgb Bsdf::f(const Pair& directions) const {
     std::visit(
         [&](const auto& lobe) {
           if constexpr (kSmooth<decltype(lobe)>) {
-            if (directions.serves(lobe.kTransmits)) {
+            if (directions.serves(lobe)) {
               sum += lobes_[i].scale * penumbra::f(lobe, directions.wo, directions.wi);
             }
           }
@@ -110,7 +114,7 @@ double Bsdf::pdf(const Pair& directions) const {
     std::visit(
         [&](const auto& lobe) {
           if constexpr (kSmooth<decltype(lobe)>) {
-            if (!directions.serves(lobe.kTransmits)) return;
+            if (!directions.serves(lobe)) return;
             double density = penumbra::pdf(lobe, directions.wo, directions.wi);
             if constexpr (lobe.kFolds) density += penumbra::pdf(lobe, directions.wo, -directions.wi);
             sum += lobes_[i].weight * density;
@@ -147,7 +151,7 @@ Rgb Bsdf::f_beyond_lambertian(const Vec3f& wo, const Vec3f& wi) const {
     std::visit(
         [&](const auto& lobe) {
           if constexpr (kSmooth<decltype(lobe)> && !kLambertian<decltype(lobe)>) {
-            if (directions.serves(lobe.kTransmits))
+            if (directions.serves(lobe))
               sum += lobes_[i].scale * penumbra::f(lobe, directions.wo, directions.wi);
           }
         },
@@ -166,7 +170,8 @@ double Bsdf::pdf(const Vec3f& wo, const Vec3f& wi) const {
   return pdf(pair(wo, wi));
 }
 
-const Bsdf::Weighted& Bsdf::choose(double choice) const {
+/// Leaves of `choice` what has not been used up, again in [0,1].
+const Bsdf::Weighted& Bsdf::choose(double& choice) const {
   double rest = choice * total_weight_;
   int last = 0;
   for (int i = 0; i < count_; ++i) {
@@ -175,6 +180,7 @@ const Bsdf::Weighted& Bsdf::choose(double choice) const {
     if (rest < lobes_[i].weight) break;
     rest -= lobes_[i].weight;
   }
+  choice = std::min(rest / lobes_[last].weight, 1.);
   return lobes_[last];
 }
 
@@ -183,9 +189,15 @@ std::optional<BsdfSample> Bsdf::sample(const Vec3f& wo, const Vec2d& u, double c
   const Vec3d local_wo = to_local(wo);
   if (abs_cos(local_wo) < kLeastCosine) return std::nullopt;
   BsdfSample result;
+  const Weighted& chosen = choose(choice);
   const bool found = std::visit(
       [&](const auto& lobe) {
-        if constexpr (kSmooth<decltype(lobe)>) {
+        using L = std::decay_t<decltype(lobe)>;
+        if constexpr (kFibre<L>) {
+          const std::optional<Vec3d> local = penumbra::sample(lobe, local_wo, u, choice);
+          if (local) result.wi = to_world(*local);
+          return local.has_value();
+        } else if constexpr (kSmooth<L>) {
           const std::optional<Vec3d> local = penumbra::sample(lobe, local_wo, u);
           if (!local) return false;
           result.wi = to_world(*local);
@@ -196,7 +208,7 @@ std::optional<BsdfSample> Bsdf::sample(const Vec3f& wo, const Vec2d& u, double c
           return false;
         }
       },
-      choose(choice).lobe);
+      chosen.lobe);
   if (!found) return std::nullopt;
   // From the rounded direction, so that pdf() and f() of the caller give the same numbers.
   const Pair directions = pair(wo, result.wi);

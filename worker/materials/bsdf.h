@@ -58,7 +58,7 @@ class Bsdf final : public Scattering {
   Pair pair(const Vec3f& wo, const Vec3f& wi) const;
   Rgb f(const Pair& directions) const;
   double pdf(const Pair& directions) const;
-  const Weighted& choose(double choice) const;
+  const Weighted& choose(double& choice) const;
 
   Vec3f ng_, ns_, ss_, ts_;
   std::array<Weighted, kMostLobes> lobes_;

@@ -8,10 +8,12 @@
 //   kSpecular   a Dirac lobe: scatter(lobe, wo); else f(), pdf(), sample()
 //   kTransmits  serves pairs on opposite sides of the geometric surface; else on the same side
 //   kFolds      f is also non-zero between the shading and the geometric horizon: see Bsdf::pdf
+#include <type_traits>
 #include <variant>
 
 #include "worker/materials/coated_lambert.h"
 #include "worker/materials/fresnel_blend.h"
+#include "worker/materials/hair_fibre.h"
 #include "worker/materials/lambert.h"
 #include "worker/materials/lambert_transmission.h"
 #include "worker/materials/microfacet_reflection.h"
@@ -24,6 +26,10 @@ namespace penumbra {
 
 using Lobe =
     std::variant<Lambert, OrenNayar, LambertTransmission, MicrofacetReflection, MicrofacetTransmission,
-                 FresnelBlend, CoatedLambert, SpecularReflection, SpecularTransmission>;
+                 FresnelBlend, CoatedLambert, SpecularReflection, SpecularTransmission, HairFibre>;
+
+/// A fibre serves every pair of directions, and its samples take a third number.
+template <class L>
+constexpr bool kFibre = std::is_same_v<L, HairFibre>;
 
 }  // namespace penumbra

@@ -125,6 +125,7 @@ MaterialBuilder::Built MaterialBuilder::build_kind(const MaterialEntity& entity)
   const std::string& type = entity.type;
   if (is_one_of(type, {"", "none", "interface"})) return InterfaceMaterial{};
   if (type == "mix") return mix(entity);
+  if (type == "hair") return hair(entity);
   if (is_one_of(type, {"matte", "plastic", "metal", "substrate", "uber", "mirror", "glass", "translucent"})) {
     return build_v3(entity);
   }

@@ -30,6 +30,7 @@ class MaterialBuilder {
   Built uber(const MaterialEntity& entity);
   Built glass(const MaterialEntity& entity);
   Built translucent(const MaterialEntity& entity);
+  Built hair(const MaterialEntity& entity);
   Built mix(const MaterialEntity& entity);
   absl::StatusOr<std::shared_ptr<const Image>> normal_map(const MaterialEntity& entity);
   Built conductor(const MaterialEntity& entity, std::string_view prefix);

@@ -86,10 +86,6 @@ MaterialBuilder::Built MaterialBuilder::build_nearest(const MaterialEntity& enti
     RETURN_IF_ERROR(nearest("matte"));
     return matte(entity, "reflectance", 0.5f);
   }
-  if (type == "hair") {
-    RETURN_IF_ERROR(nearest("matte"));
-    return matte(entity, entity.params.find("color") != nullptr ? "color" : "reflectance", 0.5f);
-  }
   // fourier, measured: tables; the rest: pbrt-v1's own names.
   if (is({"fourier", "measured", "debug", "bluepaint", "brushedmetal", "clay", "felt", "primer", "shinymetal",
           "skin"})) {

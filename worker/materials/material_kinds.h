@@ -76,6 +76,14 @@ struct CoatedDiffuseMaterial {
   FloatValue eta;
   Roughness roughness;
 };
+/// Absorption by one of three: itself, a colour, melanin.
+struct HairMaterial {
+  enum class Pigment { kAbsorption, kColor, kMelanin } pigment = Pigment::kMelanin;
+  RgbValue tint;  ///< absorption or colour
+  FloatValue eumelanin, pheomelanin;
+  FloatValue eta, beta_m, beta_n;
+  FloatValue alpha;  ///< of the scales, degrees
+};
 /// Lobes of two materials, the first weighted by `amount` and the second by 1 - amount (pbrt-v3; v4 counts
 /// from the other end, which the builder turns round).
 struct MixMaterial {
@@ -86,7 +94,7 @@ struct MixMaterial {
 using MaterialKind =
     std::variant<InterfaceMaterial, MatteMaterial, PlasticMaterial, MetalMaterial, ReflectanceMetalMaterial,
                  SubstrateMaterial, UberMaterial, MirrorMaterial, GlassMaterial, ThinGlassMaterial,
-                 TranslucentMaterial, CoatedDiffuseMaterial, MixMaterial>;
+                 TranslucentMaterial, CoatedDiffuseMaterial, HairMaterial, MixMaterial>;
 
 /// A material and what changes its shading normal.
 struct Material {

@@ -169,6 +169,27 @@ void add(const CoatedDiffuseMaterial& m, const ShadingContext& at, const Rgb& sc
   add_reflection(Rgb(1), facets(m.roughness, at), FresnelDielectric{1, eta}, scale, bsdf);
 }
 
+// Where the hair was hit is v across it: pbrt's curves have it, and so does any surface that is given such uv.
+void add(const HairMaterial& m, const ShadingContext& at, const Rgb& scale, Bsdf& bsdf) {
+  const double beta_n = std::clamp(at(m.beta_n), 0.0, 1.0), beta_m = std::clamp(at(m.beta_m), 0.0, 1.0);
+  Vec3f sigma_a;
+  switch (m.pigment) {
+    case HairMaterial::Pigment::kAbsorption: {
+      const Rgb tint = at(m.tint);
+      sigma_a = {tint.x, tint.y, tint.z};
+      break;
+    }
+    case HairMaterial::Pigment::kColor:
+      sigma_a = hair_absorption_of(at(m.tint), beta_n);
+      break;
+    case HairMaterial::Pigment::kMelanin:
+      sigma_a = hair_absorption_of_melanin(std::max(0.0, at(m.eumelanin)), std::max(0.0, at(m.pheomelanin)));
+      break;
+  }
+  const double eta = std::max(1.0, at(m.eta));
+  bsdf.add(hair_fibre(sigma_a, 2 * double{at.point.uv.y} - 1, eta, beta_m, beta_n, at(m.alpha)), scale);
+}
+
 void add(const MixMaterial& m, const ShadingContext& at, const Rgb& scale, Bsdf& bsdf) {
   const Rgb amount = at(m.amount);
   const auto kind_of = [&](int i) -> const MaterialKind& {
@@ -213,6 +234,9 @@ LobeBounds bounds(const ThinGlassMaterial&) {
 }
 LobeBounds bounds(const TranslucentMaterial&) {
   return {4, false};
+}
+LobeBounds bounds(const HairMaterial&) {
+  return {1, false};
 }
 LobeBounds bounds(const CoatedDiffuseMaterial& m) {
   return {2, may_be_smooth(m.roughness)};

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "proto/status.h"
+#include "scenes/curve.h"
 #include "scenes/mesh.h"
 #include "scenes/transforms.h"
 #include "worker/render/light_params.h"
@@ -78,7 +79,7 @@ absl::StatusOr<std::optional<Vec3d>> distant_origin(const SceneDescription& desc
   for (const InstanceEntity& instance : description.instances)
     if (!is_near_camera(transform_point(instance.placement.start, Vec3d(0)))) return std::optional<Vec3d>();
   for (const ShapeEntity& shape : description.shapes) {
-    if (!has_mesh(shape)) continue;
+    if (!has_mesh(shape) && !has_tubes(shape)) continue;
     // Whatever can be told without reading a file is told first: most scenes end here.
     if (shape.type != "plymesh" || first_vertex(shape.params)) {
       ASSIGN_OR_RETURN(const Vec3d p, point_of(shape, description, files));

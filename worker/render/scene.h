@@ -1,5 +1,6 @@
 #pragma once
 // A scene ready to be rendered: immutable, shared by a worker's threads. Made by scene_builder.cpp.
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct SceneMesh {
   /// The normal from the vertices' order points against pbrt's orientation (ReverseOrientation, or a
   /// transform that swaps handedness). Vertex normals in the mesh are already turned.
   bool flip = false;
+  std::unique_ptr<const Tubes> tubes;  ///< then there are no triangles
 };
 
 struct SceneInstance {

@@ -8,8 +8,10 @@
 namespace penumbra {
 
 bool swaps_handedness(const Matrix& m) {
-  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-             m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]) < 0;
+  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+             m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+             m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]) <
+         0;
 }
 
 namespace {
@@ -55,6 +57,12 @@ absl::StatusOr<ScenePtr> RenderSceneBuilder::build() {
   used_textures_.resize(description_.textures.size());
   RETURN_IF_ERROR(place_shapes());
   RETURN_IF_ERROR(place_objects());
+  for (TubePlacer::Placed& placed : tubes_.finish()) {
+    scene_->meshes.push_back(std::move(placed.mesh));
+    shapes_.push_back(placed.shape);
+    visible_.push_back(true);
+    alpha_.push_back({1});
+  }
   ASSIGN_OR_RETURN(scene_->effects.media, build_media(description_, files_, shapes_, options_.threads));
   RETURN_IF_ERROR(build_textures());
   RETURN_IF_ERROR(add_lights());
@@ -70,7 +78,9 @@ absl::StatusOr<ScenePtr> RenderSceneBuilder::build() {
 /// same motion are one object.
 absl::Status RenderSceneBuilder::place_shapes() {
   const std::vector<ShapeEntity>& shapes = description_.shapes;
-  const auto together = [](const Placement& a, const Placement& b) { return a.start == b.start && a.end == b.end; };
+  const auto together = [](const Placement& a, const Placement& b) {
+    return a.start == b.start && a.end == b.end;
+  };
   for (size_t i = 0; i < shapes.size();) {
     const Placement& placement = shapes[i].placement;
     if (!placement.moving()) {
@@ -90,6 +100,7 @@ absl::Status RenderSceneBuilder::place_shapes() {
 
 absl::Status RenderSceneBuilder::place_shape(const ShapeEntity& shape, const Matrix& to_parent,
                                              bool in_object) {
+  if (has_tubes(shape)) return in_object ? absl::OkStatus() : tubes_.add(shape, to_parent);
   if (!has_mesh(shape)) return absl::OkStatus();  // named by unsupported()
   ASSIGN_OR_RETURN(TriangleMesh mesh, make_mesh(shape, description_, files_, warnings_));
   if (mesh.indices.empty()) return absl::OkStatus();
@@ -109,8 +120,8 @@ absl::Status RenderSceneBuilder::place_shape(const ShapeEntity& shape, const Mat
     warnings_.push_back(fmt::format("{}: an area light inside an object does not emit (as in pbrt)",
                                     description_.place(shape.loc)));
   } else if (emits) {
-    RETURN_IF_ERROR(add_area_light(shape, uint32_t(scene_->meshes.size()), placed, visible, description_, files_,
-                                   scene_->lights, warnings_));
+    RETURN_IF_ERROR(add_area_light(shape, uint32_t(scene_->meshes.size()), placed, visible, description_,
+                                   files_, scene_->lights, warnings_));
   }
   if (!in_object) scene_->triangles += int64_t(placed.mesh.triangles());
   scene_->meshes.push_back(std::move(placed));
@@ -134,6 +145,9 @@ absl::Status RenderSceneBuilder::place_objects() {
       object = uint32_t(objects_.size());
       objects_.push_back({first, uint32_t(scene_->meshes.size())});
     }
+    for (const ShapeEntity& shape : entity.shapes)
+      if (has_tubes(shape))
+        RETURN_IF_ERROR(tubes_.add(shape, shape.placement.start * instance.placement.start));
     RETURN_IF_ERROR(place_object(object, instance.placement, instance.loc));
   }
   return absl::OkStatus();
@@ -187,7 +201,7 @@ absl::Status RenderSceneBuilder::build_geometry() {
   std::vector<MeshInput> inputs;
   inputs.reserve(scene_->meshes.size());
   for (size_t m = 0; m < scene_->meshes.size(); ++m)
-    inputs.push_back({&scene_->meshes[m].mesh, alpha_test(m), visible_[m]});
+    inputs.push_back({&scene_->meshes[m].mesh, alpha_test(m), visible_[m], scene_->meshes[m].tubes.get()});
   ASSIGN_OR_RETURN(scene_->geometry, Geometry::build(inputs, objects_, placed_, options_.threads));
   for (AreaEmitter& light : scene_->lights.area) {
     if (!light.flat) continue;
@@ -202,8 +216,7 @@ absl::Status RenderSceneBuilder::build_geometry() {
 
 absl::Status RenderSceneBuilder::add_lights() {
   for (const LightEntity& light : description_.lights)
-    RETURN_IF_ERROR(
-        add_light(light, description_, files_, options_.strict, scene_->lights, warnings_));
+    RETURN_IF_ERROR(add_light(light, description_, files_, options_.strict, scene_->lights, warnings_));
   scene_->lights.by_mesh.resize(scene_->meshes.size());
   return absl::OkStatus();
 }

@@ -2,6 +2,7 @@
 // From the description to the scene: meshes placed, lights found, everything built.
 #include "absl/status/statusor.h"
 #include "worker/render/scene.h"
+#include "worker/render/tube_placer.h"
 
 namespace penumbra {
 
@@ -15,7 +16,8 @@ class RenderSceneBuilder {
         effects_(std::move(effects)),
         files_(files),
         options_(options),
-        warnings_(warnings) {}
+        warnings_(warnings),
+        tubes_(description, files, scene_, warnings) {}
 
   absl::StatusOr<ScenePtr> build();
 
@@ -37,11 +39,12 @@ class RenderSceneBuilder {
   std::vector<std::string>& warnings_;
   ScenePtr scene_;
   std::vector<const ShapeEntity*> shapes_;  ///< per mesh: what it was made from
-  std::vector<bool> visible_;          ///< per mesh
-  std::vector<FloatValue> alpha_;      ///< per mesh; constant 1: opaque
+  std::vector<bool> visible_;               ///< per mesh
+  std::vector<FloatValue> alpha_;           ///< per mesh; constant 1: opaque
   std::vector<bool> used_textures_;
   std::vector<ObjectInput> objects_;
   std::vector<InstanceInput> placed_;
+  TubePlacer tubes_;
 };
 
 /// Area emitters of a placed shape, appended to `lights`; the mesh's triangles are its surface.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "worker/geometry/pose.h"
+#include "worker/render/tube_surface.h"
 #include "worker/sampling/warp.h"
 
 namespace penumbra {
@@ -127,6 +128,7 @@ void set_shading_tangents(SurfacePoint& point) {
 
 SurfacePoint surface_at(const Scene& scene, const Hit& hit, const Vec3f& direction, const CameraRay* footprint) {
   const SceneMesh& scene_mesh = scene.meshes[hit.id.mesh];
+  if (scene_mesh.tubes) return tube_surface_at(*scene_mesh.tubes, hit, direction);
   const TriangleMesh& mesh = scene_mesh.mesh;
   const uint32_t* index = &mesh.indices[size_t(hit.id.primitive) * 3];
   const Triangle t = triangle_of(mesh, index);

@@ -29,7 +29,8 @@ template <class F>
 void each_smooth(const Lobe& lobe, const F& use) {
   std::visit(
       [&](const auto& kind) {
-        if constexpr (!std::decay_t<decltype(kind)>::kSpecular) use(kind);
+        using L = std::decay_t<decltype(kind)>;
+        if constexpr (!L::kSpecular && !kFibre<L>) use(kind);
       },
       lobe);
 }

@@ -278,7 +278,7 @@ TEST_F(MaterialTest, CoatedDiffuseSaysHowItDiffers) {
 
 TEST_F(MaterialTest, UnsupportedIsTheNearestWithAWarningOrAnError) {
   for (const char* type :
-       {"disney", "subsurface", "kdsubsurface", "hair", "fourier", "measured", "coatedconductor"}) {
+       {"disney", "subsurface", "kdsubsurface", "fourier", "measured", "coatedconductor"}) {
     const std::string text = "Material \"" + std::string(type) + "\"";
     const auto materials = build(text);
     EXPECT_TRUE(materials.ok()) << type << ": " << materials.status();
