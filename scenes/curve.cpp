@@ -172,7 +172,10 @@ bool add_tubes(const Curve& curve, const Matrix& to_world, Tubes& tubes) {
   for (size_t k = 0; k < curve.pieces.size(); ++k) {
     CurvePiece piece;
     for (int i = 0; i < 4; ++i) to_world.multVecMatrix(curve.pieces[k][i], piece[i]);
-    const int chords = chords_of(piece, tolerance);
+    const double wider = 0.5 * scale *
+                         std::max(curve.width(double(k) / double(curve.pieces.size())),
+                                  curve.width(double(k + 1) / double(curve.pieces.size())));
+    const int chords = std::max(chords_of(piece, tolerance), chords_for_length(piece, kMostSlender * wider));
     for (int i = k == 0 ? 0 : 1; i <= chords; ++i) {
       const double t = static_cast<double>(i) / chords,
                    u = (static_cast<double>(k) + t) / curve.pieces.size();

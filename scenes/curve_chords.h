@@ -28,4 +28,16 @@ inline int chords_of(const CurvePiece& p, double tolerance) {
   return static_cast<int>(std::clamp(chords, 1., static_cast<double>(kMostCurveSegments)));
 }
 
+/// The longest segment, in radii: what Embree computes in single precision of a side of length L puts r² off
+/// by a few u L², which at 256 r is some thousandths of it.
+constexpr double kMostSlender = 256;
+
+/// Chords of equal steps no longer than `longest`: |p′| is at most three times the longest leg of the control
+/// polygon.
+inline int chords_for_length(const CurvePiece& p, double longest) {
+  const double leg = std::max({(p[1] - p[0]).length(), (p[2] - p[1]).length(), (p[3] - p[2]).length()});
+  return static_cast<int>(
+      std::clamp(std::ceil(3 * leg / longest), 1., static_cast<double>(kMostCurveSegments)));
+}
+
 }  // namespace penumbra

@@ -60,10 +60,12 @@ TriangleBlock block_of(const BuiltLeaf& leaf, const TriangleList& list) {
   return block;
 }
 
-/// Copies a built tree into arrays, depth first; leaves become blocks of triangles, or instances.
+/// Copies a built tree into arrays, depth first; leaves become blocks of triangles, or instances or segments:
+/// of several in one leaf each has its box in a node of their own.
 class Flattener {
  public:
-  Flattener(LineTree& tree, const TriangleList* triangles) : tree_(tree), triangles_(triangles) {}
+  Flattener(LineTree& tree, std::span<const Box> boxes, const TriangleList* triangles)
+      : tree_(tree), boxes_(boxes), triangles_(triangles) {}
 
   void root(const BuiltNode& node, const Box& bounds) {
     for (int k = 0; k < 3; ++k) tree_.centre[k] = 0.5 * (double{bounds.lo[k]} + bounds.hi[k]);
@@ -72,6 +74,10 @@ class Flattener {
     size_t nodes = node.leaf ? 1 : 0, leaves = 0;
     count(node, nodes, leaves);
     tree_.nodes.reserve(nodes);
+    if (is_bundle(node)) {
+      bundle(static_cast<const BuiltLeaf&>(node), 1);
+      return;
+    }
     if (triangles_ != nullptr) tree_.blocks.reserve(leaves);
     if (!node.leaf) {
       inner(static_cast<const BuiltInner&>(node), 1);
@@ -94,6 +100,10 @@ class Flattener {
     for (uint32_t lane = 0; lane < built.count; ++lane) {
       set_bounds(node, static_cast<int>(lane), built.bounds[lane]);
       const BuiltNode& child = *built.children[lane];
+      if (is_bundle(child)) {
+        node.child[lane] = bundle(static_cast<const BuiltLeaf&>(child), depth + 1);
+        continue;
+      }
       if (child.leaf) node.leaves |= 1u << lane;
       node.child[lane] = child.leaf ? leaf(static_cast<const BuiltLeaf&>(child))
                                     : inner(static_cast<const BuiltInner&>(child), depth + 1);
@@ -103,8 +113,26 @@ class Flattener {
     return index;
   }
 
-  static void count(const BuiltNode& node, size_t& nodes, size_t& leaves) {
-    ++(node.leaf ? leaves : nodes);
+  bool is_bundle(const BuiltNode& node) const {
+    return node.leaf && triangles_ == nullptr && static_cast<const BuiltLeaf&>(node).count > 1;
+  }
+
+  uint32_t bundle(const BuiltLeaf& many, uint32_t depth) {
+    BuiltLeaf singles[kWidth];
+    BuiltInner node;
+    node.count = many.count;
+    for (uint32_t i = 0; i < many.count; ++i) {
+      singles[i].leaf = true;
+      singles[i].count = 1;
+      singles[i].items[0] = many.items[i];
+      node.children[i] = &singles[i];
+      node.bounds[i] = boxes_[many.items[i]];
+    }
+    return inner(node, depth);
+  }
+
+  void count(const BuiltNode& node, size_t& nodes, size_t& leaves) const {
+    ++(node.leaf && !is_bundle(node) ? leaves : nodes);
     if (node.leaf) return;
     const auto& built = static_cast<const BuiltInner&>(node);
     for (uint32_t lane = 0; lane < built.count; ++lane) count(*built.children[lane], nodes, leaves);
@@ -126,6 +154,7 @@ class Flattener {
   }
 
   LineTree& tree_;
+  std::span<const Box> boxes_;
   const TriangleList* triangles_;
 };
 
@@ -139,11 +168,10 @@ Box bounds_of(std::span<const Box> boxes) {
 }
 
 absl::Status build_tree(std::span<const Box> boxes, const TriangleList* triangles, TreeBuilder& builder,
-                        LineTree& tree) {
+                        LineTree& tree, int leaf_size) {
   if (boxes.empty()) return absl::OkStatus();
-  const int leaf_size = triangles == nullptr ? 1 : kWidth;
   return builder.build(boxes, leaf_size, [&](const BuiltNode& root) {
-    Flattener(tree, triangles).root(root, bounds_of(boxes));
+    Flattener(tree, boxes, triangles).root(root, bounds_of(boxes));
   });
 }
 
@@ -216,7 +244,7 @@ absl::Status place_instances(LineBvh& bvh, std::span<const InstanceInput> instan
     boxes.push_back(placed_bounds(tree, instances[i]));
     numbers.push_back(static_cast<uint32_t>(i));
   }
-  RETURN_IF_ERROR(build_tree(boxes, nullptr, builder, bvh.instance_tree));
+  RETURN_IF_ERROR(build_tree(boxes, nullptr, builder, bvh.instance_tree, 1));
   for (LineNode& node : bvh.instance_tree.nodes) {
     for (int lane = 0; lane < kWidth; ++lane) {
       if (node.leaves >> lane & 1) node.child[lane] = numbers[node.child[lane]];
@@ -246,7 +274,7 @@ absl::Status build_tubes(std::span<const MeshInput> meshes, TreeBuilder& builder
       tubes.segments.push_back(p);
     }
   }
-  return build_tree(boxes, nullptr, builder, tubes.tree);
+  return build_tree(boxes, nullptr, builder, tubes.tree, kWidth);
 }
 
 size_t bytes_of(const LineTree& tree) {
@@ -296,7 +324,7 @@ absl::StatusOr<LineBvh> build_line_bvh(std::span<const MeshInput> meshes,
     for (size_t m = 0; m < meshes.size(); ++m) {
       if (belongs(m) && seen_by_lines(meshes[m])) list.add(*meshes[m].mesh, bvh.first_triangle[m]);
     }
-    return build_tree(list.boxes, &list, builder, tree);
+    return build_tree(list.boxes, &list, builder, tree, kWidth);
   };
   const std::vector<bool> in_object = meshes_of_objects(meshes.size(), objects);
   RETURN_IF_ERROR(build_over(bvh.world, [&](size_t m) { return !in_object[m]; }));
