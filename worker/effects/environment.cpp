@@ -149,6 +149,10 @@ absl::StatusOr<Environment> Environment::build(const LightEntity& light, const S
     if (scale->numbers.size() >= 3) e.scale_ *= Rgb(float(scale->numbers[0]), float(scale->numbers[1]), float(scale->numbers[2]));
     else e.scale_ *= float(light.params.number("scale", 1));
   }
+  // A portal changes no picture, only how soon it converges: pbrt looks through it alone.
+  if (const Param* portal = light.params.find("portal"))
+    warnings.push_back(fmt::format("{}: the portal is not used: light from all of the sky is sampled",
+                                   description.place(portal->loc)));
   const bool v4 = light.params.find("filename") != nullptr;
   const std::string name = light.params.string(v4 ? "filename" : "mapname", "");
   if (name.empty()) return e;
