@@ -43,7 +43,7 @@ absl::Status ensure_folder(const fs::path& folder) {
 absl::Status check_options(const JobOptions& o) {
   if (!o.budget.empty() || !o.passes.empty() || !o.target_error.empty())
     return invalid_input("--estimates says how much converge renders, not --budget, --spp or --target-error");
-  if (!o.job.transient.empty()) return invalid_input("--transient: converge makes no picture to sort into bins");
+  if (!o.transient.empty()) return invalid_input("--transient: converge makes no picture to sort into bins");
   if (!o.crop.empty() || !o.regions.empty() || !o.reference.empty())
     return invalid_input("converge looks at one pixel: --crop, --region and --reference have no meaning");
   return absl::OkStatus();

@@ -63,12 +63,14 @@ absl::StatusOr<Json> report_data(const std::string& folder) {
         notes.push_back(message_of(image.status()));
     }
     std::vector<std::optional<ExrBins>> bins(run["mixes"].size());
-    if (run.contains("transient") && !run["transient"].is_null())
-      for (size_t m = 0; m < bins.size(); ++m)
-        if (absl::StatusOr<ExrBins> read = read_exr_bins(base / run["mixes"][m]["image"].get<std::string>()); read.ok())
-          bins[m] = *std::move(read);
-        else
-          notes.push_back(message_of(read.status()));
+    const bool transient = run.contains("transient") && !run["transient"].is_null();
+    for (size_t m = 0; transient && m < bins.size(); ++m) {
+      absl::StatusOr<ExrBins> read = read_exr_bins(base / run["mixes"][m]["image"].get<std::string>());
+      if (read.ok())
+        bins[m] = *std::move(read);
+      else
+        notes.push_back(message_of(read.status()));
+    }
     Json reference;
     if (window && run.contains("reference") && run["reference"].is_string()) {
       const absl::StatusOr<FilmImage> image = read_part(run["reference"].get<std::string>(), window);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <numbers>
 
 #include "proto/status.h"
@@ -68,6 +69,8 @@ struct Environment::Map {
   std::vector<Rgb> texels;
   /// Running sums of luminance × texel solid angle: per row over its columns, and over the rows.
   std::vector<double> columns, rows;
+  mutable std::once_flag arcs_made;
+  mutable std::optional<ArcTable> arcs;
 
   const Rgb& texel(int x, int y) const { return texels[size_t(y) * size_t(width) + size_t(x)]; }
   const double* row(int y) const { return columns.data() + size_t(y) * (size_t(width) + 1); }
@@ -149,6 +152,10 @@ absl::StatusOr<Environment> Environment::build(const LightEntity& light, const S
     if (scale->numbers.size() >= 3) e.scale_ *= Rgb(float(scale->numbers[0]), float(scale->numbers[1]), float(scale->numbers[2]));
     else e.scale_ *= float(light.params.number("scale", 1));
   }
+  // A portal changes no picture, only how soon it converges: pbrt looks through it alone.
+  if (const Param* portal = light.params.find("portal"))
+    warnings.push_back(fmt::format("{}: the portal is not used: light from all of the sky is sampled",
+                                   description.place(portal->loc)));
   const bool v4 = light.params.find("filename") != nullptr;
   const std::string name = light.params.string(v4 ? "filename" : "mapname", "");
   if (name.empty()) return e;
@@ -210,6 +217,72 @@ double Environment::pdf(const Vec3f& direction) const {
   const Vec3f local = direction * to_light_;
   map_->texel_of(Vec3d(local).normalized(), x, y);
   return luminance(map_->texel(x, y)) / map_->rows.back();
+}
+
+namespace {
+
+/// Most rows of a likeness of an equal-area map.
+constexpr int kMostArcRows = 512;
+/// What a cell has at least, of the mean: where no subsample fell light may still be.
+constexpr double kLeastOfMean = 1e-3;
+constexpr int kSubsamples = 4;
+
+}  // namespace
+
+/// Of each cell the larger of two means: over points of the cell, and over points of the map's texels that
+/// fall into it. The first serves where cells are smaller than texels, the second where they are larger.
+ArcTable Environment::likeness(const Map& map) {
+  const int height = std::min(map.height, kMostArcRows), width = 2 * height;
+  const auto cells = size_t(width) * size_t(height);
+  std::vector<double> of_cells(cells, 0), of_texels(cells, 0), hits(cells, 0);
+  const auto lit = [&map](const Vec3d& w) {
+    int x = 0, y = 0;
+    map.texel_of(w, x, y);
+    return luminance(map.texel(x, y));
+  };
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (int i = 0; i < kSubsamples * kSubsamples; ++i) {
+        const double phi = 2 * kPi * (x + (i % kSubsamples + 0.5) / kSubsamples) / width;
+        const double theta = kPi * (y + (i / kSubsamples + 0.5) / kSubsamples) / height;
+        const Vec3d w(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
+        of_cells[size_t(y) * size_t(width) + size_t(x)] += lit(w) / (kSubsamples * kSubsamples);
+      }
+  for (int y = 0; y < map.height; ++y)
+    for (int x = 0; x < map.width; ++x)
+      for (int i = 0; i < kSubsamples * kSubsamples; ++i) {
+        const Vec3d w = equal_area_direction({(x + (i % kSubsamples + 0.5) / kSubsamples) / map.width,
+                                              (y + (i / kSubsamples + 0.5) / kSubsamples) / map.height});
+        const Vec2d st = equirectangular(w);
+        const auto cell = size_t(std::clamp(int(st.y * height), 0, height - 1)) * size_t(width) +
+                          size_t(std::clamp(int(st.x * width), 0, width - 1));
+        of_texels[cell] += luminance(map.texel(x, y));
+        ++hits[cell];
+      }
+  const double least = kLeastOfMean * map.rows.back() / (4 * kPi);
+  for (size_t c = 0; c < cells; ++c)
+    of_cells[c] = std::max({of_cells[c], hits[c] > 0 ? of_texels[c] / hits[c] : 0, least});
+  return ArcTable(width, height, of_cells);
+}
+
+const ArcTable& Environment::arcs() const {
+  static const ArcTable constant(1, 1, {1.0});
+  if (!map_) return constant;
+  std::call_once(map_->arcs_made, [this] {
+    if (map_->equal_area) {
+      map_->arcs.emplace(likeness(*map_));
+      return;
+    }
+    std::vector<double> values;
+    values.reserve(map_->texels.size());
+    for (const Rgb& texel : map_->texels) values.push_back(std::max(0.0, luminance(texel)));
+    map_->arcs.emplace(map_->width, map_->height, values);
+  });
+  return *map_->arcs;
+}
+
+Rgb Environment::radiance(int column, int row, const Vec3f& direction) const {
+  return map_ && !map_->equal_area ? map_->texel(column, row) * scale_ : radiance(direction);
 }
 
 double Environment::mean_luminance() const {

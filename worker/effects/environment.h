@@ -9,6 +9,7 @@
 #include "scenes/description.h"
 #include "scenes/files.h"
 #include "scenes/math.h"
+#include "worker/lights/arc.h"
 
 namespace penumbra {
 
@@ -31,11 +32,21 @@ class Environment {
   EnvironmentSample sample(const Vec2d& u) const;
   /// Density of sample() at a direction, sr⁻¹.
   double pdf(const Vec3f& direction) const;
+  /// Luminance over the meridians of the map's poles, for lines; made when first asked for, by any number of
+  /// threads (16 bytes a texel). Of an equirectangular map it is that of the texels, of an equal-area map a
+  /// coarser likeness that is 0 nowhere, of a constant 1.
+  const ArcTable& arcs() const;
+  /// Of a cell of arcs() that the direction lies in to rounding: its texel's, if it is one.
+  Rgb radiance(int column, int row, const Vec3f& direction) const;
+  /// Unit directions between the world and the axes of arcs().
+  Vec3d to_world(const Vec3d& local) const { return (local * Imath::M33d(to_world_)).normalized(); }
+  Vec3d to_local(const Vec3d& world) const { return (world * Imath::M33d(to_light_)).normalized(); }
   /// Mean radiance over the sphere, for choosing among lights.
   double mean_luminance() const;
 
  private:
   struct Map;
+  static ArcTable likeness(const Map& map);
   Rgb scale_{1};
   Imath::M33f to_light_, to_world_;
   std::shared_ptr<const Map> map_;  ///< empty: constant

@@ -70,7 +70,26 @@ LightLine line_solid_angle_through(const SeenShape& seen, bool along_u, const Ve
   return rectangle_line(seen, along_u, rectangle->chord_at(along_u, fraction), fraction);
 }
 
+LightLine arc_line(const Vec3d& x, const Vec3d& pole, const Vec3d& equator, double radius,
+                   const ArcMeasure& measure, double scale) {
+  LightLine line;
+  line.corner = x;
+  line.from = radius * pole;
+  line.along = radius * (equator - pole);
+  line.a = line.corner + line.from;
+  line.b = line.a + line.along;
+  line.scale = scale;
+  line.measure = measure;
+  return line;
+}
+
 double parameter_of(const LightLine& line, const Vec3d& p) {
+  if (std::holds_alternative<ArcMeasure>(line.measure)) {
+    const Vec3d w = p - line.corner;
+    const double to_pole = std::max(w.dot(line.from), 0.0),
+                 to_equator = std::max(w.dot(line.from + line.along), 0.0);
+    return to_pole + to_equator > 0 ? to_equator / (to_pole + to_equator) : 0;
+  }
   const double length2 = line.along.length2();
   if (!(length2 > 0)) return 0;
   return std::min(std::max(((p - line.corner) - line.from).dot(line.along) / length2, 0.0), 1.0);
@@ -110,6 +129,7 @@ Vec3d offset_from(const LightLine& line, const Vec3d& x, double s) {
 
 /// Density per solid angle with the whole chord visible.
 double base_density(const LightLine& line, const Vec3d& x, double s) {
+  if (const auto* arc = std::get_if<ArcMeasure>(&line.measure)) return line.scale * arc_value(*arc, s);
   const double height = (x - line.corner).dot(line.n);
   if (!(height > 0)) return 0;
   if (!std::holds_alternative<LengthMeasure>(line.measure)) return line.scale;

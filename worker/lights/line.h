@@ -6,6 +6,7 @@
 #include <span>
 
 #include "worker/geometry/intervals.h"
+#include "worker/lights/arc.h"
 #include "worker/lights/shape.h"
 
 namespace penumbra {
@@ -31,9 +32,10 @@ struct LightLine {
   Vec3d n{0, 0, 0};  ///< unit normal of the light's plane, emission side
   /// Density per solid angle of a point at s = base(s) * total/visible, in the measure below;
   /// for LengthMeasure: scale r²/cosθ, with scale × chord length the density of the chord's offset
-  /// (1/A where that goes with the length); for the others: scale = 1/S.
+  /// (1/A where that goes with the length); for ArcMeasure: scale × arc_value(s); for
+  /// the others: scale = 1/S.
   double scale = 0;  ///< 0: no such line
-  std::variant<LengthMeasure, AngularMeasure, ApexMeasure> measure;
+  std::variant<LengthMeasure, AngularMeasure, ApexMeasure, ArcMeasure> measure;
   /// a and b without the rounding of large scene offsets: a = corner + from, b = a + along, corner exact.
   Vec3d corner{0, 0, 0}, from{0, 0, 0}, along{0, 0, 0};
 };
@@ -50,11 +52,16 @@ LightLine line_area_through(const LightShape& shape, double radians, const Vec3d
 LightLine choose_line_solid_angle(const SeenShape& seen, bool along_u, double u);
 LightLine line_solid_angle_through(const SeenShape& seen, bool along_u, const Vec3d& p);
 
+/// A quarter of a great circle about x (arc.h), from `pole` to `equator`, unit and at right angles, as a
+/// chord of a circle of that radius. `n` stays 0: it has no side.
+LightLine arc_line(const Vec3d& x, const Vec3d& pole, const Vec3d& equator, double radius,
+                   const ArcMeasure& measure, double scale);
+
 /// Which strategies a shape has lines for: quads and triangles; rectangles and triangles.
 bool has_line_area(const LightShape& shape);
 bool has_line_solid_angle(const LightShape& shape);
 
-/// Where p lies on the line, s in [0,1].
+/// Where p lies on the line, s in [0,1]; of an arc, where it lies from x.
 double parameter_of(const LightLine& line, const Vec3d& p);
 
 /// Measure of [lo,hi] relative to the whole chord's (so the whole chord has 1); stable for short parts.

@@ -76,7 +76,7 @@ Rgb DirectLight::draw_lights(const ShadingPoint& point, const PassSampler& sampl
 LightView DirectLight::view_of(const ShadingPoint& point, size_t light) const {
   const LightSet& lights = scene_.lights;
   if (light < lights.area.size()) return LightView(point, lights.area[light], &sight_);
-  return LightView(point, lights.environments[light - lights.area.size()]);
+  return LightView(point, lights.environments[light - lights.area.size()], lights.reach());
 }
 
 /// Traces the directions of the mix's bsdf samples once, for all lights, and keeps those that met one.
@@ -101,7 +101,8 @@ void DirectLight::trace_bsdf(const ShadingPoint& point, const PassSampler& sampl
         for (size_t e = 0; e < lights.environments.size(); ++e) {
           found.light = lights.area.size() + e;
           found.sample.radiance = lights.environments[e].radiance(wi);
-          found.sample.at.pdf = scattered->pdf;
+          found.sample.at = {Vec3d(point.above) + Vec3d(wi) * double(lights.reach()), Vec3d(0),
+                             scattered->pdf};
           hits_.push_back(found);
         }
         continue;
@@ -179,7 +180,7 @@ void DirectLight::choose_lines(const Task& task, const PassSampler& sampler, int
     for (const int turn : task.turns)
       for (int i = 0; i < slot.count; ++i) {
         const Vec2d u = numbers(task, s, turn, i, sampler, depth);
-        own_lines_.add(choose_line(slot.strategy, task.view, u.x), task.view.point(), task.view.area());
+        own_lines_.add(choose_line(slot.strategy, task.view, u.x), task.view.point(), task.view.emitter());
       }
   }
 }
@@ -206,7 +207,9 @@ void DirectLight::gather_lines(const Task& task, const PassSampler& sampler, int
         if (!samples) continue;
         const Vec2d u = numbers(task, s, turn, i, sampler, depth);
         const LightPoint at = sample_line(own, task.view.x(), visible, u.y);
-        push(task, towards(task.view, at), s, Sight::kNoOpaque, line, parameter_of(own, at.p));
+        const double on_line = parameter_of(own, at.p);
+        push(task, task.view.is_area() ? towards(task.view, at) : towards_sky(task.view, own, on_line, at), s,
+             Sight::kNoOpaque, line, on_line);
       }
   }
 }
@@ -236,14 +239,14 @@ void DirectLight::resolve(const Task& task) {
       how == Combination::kBalance || how == Combination::kPower || how == Combination::kSmooth;
   foreign_lines_.clear();
   foreign_.assign(candidates_.size() * slots, kNoLine);
-  if (queries && task.view.is_area()) {
+  if (queries) {
     for (size_t c = 0; c < candidates_.size(); ++c)
       for (size_t s = 0; s < slots; ++s) {
         const Strategy& strategy = task.slot(mix_, s).strategy;
         if (!is_line(strategy) || s == candidates_[c].slot) continue;
         foreign_[c * slots + s] =
             foreign_lines_.add(line_through(strategy, task.view, candidates_[c].sample.at.p),
-                               task.view.point(), task.view.area());
+                               task.view.point(), task.view.emitter());
       }
     if (foreign_lines_.size() > 0) foreign_lines_.trace(scene_.geometry, sight_.for_lines(), counters_);
   }
@@ -290,6 +293,10 @@ void DirectLight::densities(const Task& task, Candidate& c, double* row) {
   if (c.sight == Sight::kUnknown) {
     if (!clear(task, c.sample)) c.f = Rgb(0);
   } else if (c.sight == Sight::kNoOpaque && scene_.geometry.has_alpha() && !is_black(c.f)) {
+    if (!task.view.is_area()) {
+      if (!clear(task, c.sample)) c.f = Rgb(0);
+      return;
+    }
     const ShadingPoint& point = task.view.point();
     const LightEnd end = end_on_light(task.view.area(), c.sample.at.p, c.sample.at.n, point.time);
     if (scene_.geometry.occluded_by_alpha(point.origin(c.sample.wi), end, counters_)) c.f = Rgb(0);

@@ -8,7 +8,7 @@ LightSample sample(const EnvironmentStrategy&, const LightView& view, const Vec2
   LightSample s;
   s.wi = e.wi;
   s.radiance = e.radiance;
-  s.at.pdf = e.pdf;
+  s.at = {view.far_along(e.wi), Vec3d(0), e.pdf};
   return s;
 }
 

@@ -9,7 +9,7 @@ void LineBatch::clear() {
   intervals_.clear();
 }
 
-size_t LineBatch::add(const LightLine& line, const ShadingPoint& point, const AreaEmitter& emitter) {
+size_t LineBatch::add(const LightLine& line, const ShadingPoint& point, const AreaEmitter* emitter) {
   const size_t handle = count_++;
   if (lines_.size() < count_) lines_.resize(count_);
   lines_[handle] = {line};
@@ -21,7 +21,7 @@ size_t LineBatch::add(const LightLine& line, const ShadingPoint& point, const Ar
 }
 
 void LineBatch::add_part(Side& side, size_t line, const Interval& range, const ShadingPoint& point,
-                         const Vec3f& x, const AreaEmitter& emitter) {
+                         const Vec3f& x, const AreaEmitter* emitter) {
   if (!(range.lo < range.hi)) return;
   const LightLine& l = lines_[line].line;
   const Vec3d ab = l.b - l.a;
@@ -29,9 +29,11 @@ void LineBatch::add_part(Side& side, size_t line, const Interval& range, const S
   query.x = x;
   query.a = Vec3f(l.a + ab * double(range.lo));
   query.b = Vec3f(l.a + ab * double(range.hi));
-  query.light = {kNone, emitter.mesh, emitter.first_primitive};
-  query.light_primitives = emitter.primitives;
-  query.plane = {l.n, emitter.rounding};
+  if (emitter != nullptr) {
+    query.light = {kNone, emitter->mesh, emitter->first_primitive};
+    query.light_primitives = emitter->primitives;
+    query.plane = {l.n, emitter->rounding};
+  }
   query.time = point.time;
   side.queries.push_back(query);
   side.parts.push_back({line, range});

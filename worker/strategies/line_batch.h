@@ -15,7 +15,8 @@ class LineBatch {
  public:
   void clear();
   /// Puts a line into the batch and returns its handle. A line with scale 0 is allowed: nothing visible.
-  size_t add(const LightLine& line, const ShadingPoint& point, const AreaEmitter& emitter);
+  /// `emitter`: whose line it is; null: of light from infinitely far away.
+  size_t add(const LightLine& line, const ShadingPoint& point, const AreaEmitter* emitter);
   /// Asks for the visible part of everything added; `shaft`, if there is one, answers for what starts above
   /// the surface.
   void trace(const Geometry& geometry, const Shaft* shaft, QueryCounters& counters);
@@ -48,7 +49,7 @@ class LineBatch {
   };
 
   void add_part(Side& side, size_t line, const Interval& range, const ShadingPoint& point, const Vec3f& x,
-                const AreaEmitter& emitter);
+                const AreaEmitter* emitter);
   void gather(size_t line, const Side& side, size_t& next);
 
   std::vector<Line> lines_;  ///< grows only; count_ of them are in use

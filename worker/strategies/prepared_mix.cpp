@@ -4,9 +4,11 @@ namespace penumbra {
 
 PreparedMix::PreparedMix(const Mix& mix, const LightSet& lights)
     : combination_(mix.combination), smoothing_{mix.smooth_shape, mix.smooth_width}, mix_(mix) {
+  // Beside area lights, lines are theirs: on the sky they cost more than they bring (README.md).
+  const bool lines = lights.area.empty();
   for (const StrategyCount& s : mix.strategies) {
     counts_.push_back(s.count);
-    environment_.push_back(fit_environment(s));
+    environment_.push_back(fit_environment(s, lines));
   }
   std::vector<StrategyCount> wanted;
   for (const StrategyCount& s : mix.strategies) wanted.push_back(in_company(s, mix));

@@ -85,8 +85,10 @@ StrategyCount in_company(const StrategyCount& wanted, const Mix& mix) {
   return out;
 }
 
-Strategy fit_environment(const StrategyCount& wanted) {
+Strategy fit_environment(const StrategyCount& wanted, bool lines) {
   if (wanted.kind == StrategyKind::kBsdf) return BsdfStrategy{};
+  if (lines && wanted.kind == StrategyKind::kLineSolidAngleU) return NormalArcStrategy{};
+  if (lines && wanted.kind == StrategyKind::kLineSolidAngleV) return MapArcStrategy{};
   return EnvironmentStrategy{};
 }
 
@@ -97,6 +99,8 @@ std::string name_of(const Strategy& strategy) {
     std::string operator()(const SolidAngleStrategy&) const { return "sa"; }
     std::string operator()(const VisibleAreaStrategy&) const { return "visible-area"; }
     std::string operator()(const EnvironmentStrategy&) const { return "its own luminance"; }
+    std::string operator()(const MapArcStrategy&) const { return "line-sa@v"; }
+    std::string operator()(const NormalArcStrategy&) const { return "line-sa@u"; }
     std::string operator()(const LineAreaStrategy& s) const {
       return fmt::format("line-area@{:g}", s.radians / kDegree);
     }

@@ -31,6 +31,11 @@ struct SolidAngleStrategy {};
 struct VisibleAreaStrategy {};
 /// The environment's own sampling by luminance; stands for `area`, `sa` and lines there.
 struct EnvironmentStrategy {};
+/// `line-sa@v` on light from infinitely far away: quarters of the map's meridians, drawn by their luminance,
+/// and by that of their texels on what is visible of them.
+struct MapArcStrategy {};
+/// `line-sa@u` there: quarters of great circles from the surface's normal to its horizon, by the cosine.
+struct NormalArcStrategy {};
 /// `line-area@DEG`. The chords do not depend on the shading point: they are made once per light.
 struct LineAreaStrategy {
   double radians = 0;
@@ -54,7 +59,8 @@ struct LineSolidAngleStrategy {
 
 using Strategy =
     std::variant<BsdfStrategy, AreaStrategy, SolidAngleStrategy, VisibleAreaStrategy, EnvironmentStrategy,
-                 LineAreaStrategy, LineUniformStrategy, LineAnalyticStrategy, LineSolidAngleStrategy>;
+                 LineAreaStrategy, LineUniformStrategy, LineAnalyticStrategy, LineSolidAngleStrategy,
+                 MapArcStrategy, NormalArcStrategy>;
 
 /// What a mix's strategy is in the company of the others: itself, but for `line-analytic`. A line as a whole
 /// has no density at a point, so weights of a point cannot know it: where they are asked for, it is
@@ -62,7 +68,8 @@ using Strategy =
 StrategyCount in_company(const StrategyCount& wanted, const Mix& mix);
 /// What a mix's strategy becomes on a light of this shape: itself, or the nearest that fits.
 Strategy fit(const StrategyCount& wanted, const AreaEmitter& emitter);
-Strategy fit_environment(const StrategyCount& wanted);
+/// On light from infinitely far away; `lines`: may `line-sa` draw lines there?
+Strategy fit_environment(const StrategyCount& wanted, bool lines);
 /// `sa`, for messages: the strategy in the words of the mix grammar.
 std::string name_of(const Strategy& strategy);
 bool is_line(const Strategy& strategy);
@@ -78,13 +85,18 @@ class LightView {
   /// `sight`: what is known of the light's visibility while it is asked; null: nothing.
   LightView(const ShadingPoint& point, const AreaEmitter& emitter, const LightSight* sight = nullptr)
       : point_(&point), area_(&emitter), sight_(sight) {}
-  LightView(const ShadingPoint& point, const Environment& environment)
-      : point_(&point), environment_(&environment) {}
+  /// `reach`: from x, past everything (LightSet::reach()).
+  LightView(const ShadingPoint& point, const Environment& environment, float reach)
+      : point_(&point), environment_(&environment), reach_(reach) {}
 
   const ShadingPoint& point() const { return *point_; }
   const AreaEmitter& area() const { return *area_; }
+  const AreaEmitter* emitter() const { return area_; }  ///< null: an environment
   const Environment& environment() const { return *environment_; }
   bool is_area() const { return area_ != nullptr; }
+  float reach() const { return reach_; }
+  /// Where a direction of the environment is, as a point: past everything.
+  Vec3d far_along(const Vec3f& wi) const { return x() + Vec3d(wi) * double(reach_); }
   Vec3d x() const { return Vec3d(point_->above); }
   const SeenShape& seen() const {
     if (!seen_) seen_.emplace(area_->shape, x());
@@ -97,6 +109,7 @@ class LightView {
   const ShadingPoint* point_;
   const AreaEmitter* area_ = nullptr;
   const Environment* environment_ = nullptr;
+  float reach_ = 0;
   const LightSight* sight_ = nullptr;
   mutable std::optional<SeenShape> seen_;
 };
@@ -104,7 +117,8 @@ class LightView {
 /// A direction towards a light.
 struct LightSample {
   Vec3f wi{0};
-  LightPoint at{Vec3d(0), Vec3d(0), 0};  ///< area lights: where; its pdf is the strategy's density, sr⁻¹ at x
+  LightPoint at{Vec3d(0), Vec3d(0),
+                0};  ///< where (or far_along()); its pdf is the strategy's density, sr⁻¹ at x
   Rgb radiance{0};
 };
 
@@ -128,10 +142,14 @@ LightLine choose(const LineAreaStrategy& strategy, const LightView& view, double
 LightLine choose(const LineUniformStrategy& strategy, const LightView& view, double u);
 LightLine choose(const LineAnalyticStrategy& strategy, const LightView& view, double u);
 LightLine choose(const LineSolidAngleStrategy& strategy, const LightView& view, double u);
+LightLine choose(const MapArcStrategy& strategy, const LightView& view, double u);
+LightLine choose(const NormalArcStrategy& strategy, const LightView& view, double u);
 LightLine through(const LineAreaStrategy& strategy, const LightView& view, const Vec3d& p);
 LightLine through(const LineUniformStrategy& strategy, const LightView& view, const Vec3d& p);
 LightLine through(const LineAnalyticStrategy& strategy, const LightView& view, const Vec3d& p);
 LightLine through(const LineSolidAngleStrategy& strategy, const LightView& view, const Vec3d& p);
+LightLine through(const MapArcStrategy& strategy, const LightView& view, const Vec3d& p);
+LightLine through(const NormalArcStrategy& strategy, const LightView& view, const Vec3d& p);
 
 // The same, asked through the variant. A strategy of the other kind gives no sample, density 0, no line.
 LightSample sample_point(const Strategy& strategy, const LightView& view, const Vec2d& u);
@@ -148,5 +166,7 @@ Rgb closed_form(const LightView& view, const LightLine& line, double lo, double 
 
 /// A point of the view's area light as a sample (direction, radiance).
 LightSample towards(const LightView& view, const LightPoint& at);
+/// The point `at`, at s of an arc, as a sample of the view's environment.
+LightSample towards_sky(const LightView& view, const LightLine& line, double s, const LightPoint& at);
 
 }  // namespace penumbra

@@ -1,0 +1,160 @@
+// Light from infinitely far away: points against quarters of great circles.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "film/exr.h"
+#include "tests/statistical/render/agreement.h"
+
+namespace penumbra {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* const kOverAFloor = R"(
+Material "matte"
+Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ] "point P" [ -4 0 -4  -4 0 4  4 0 4  4 0 -4 ]
+Material "plastic"
+AttributeBegin Translate 0 0.8 0 Shape "sphere" "float radius" 0.6 AttributeEnd
+Material "matte" "rgb Kd" [ 0.7 0.5 0.3 ]
+Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ] "point P" [ -3 0 -1.5  3 0 -1.5  3 2 -1.5  -3 2 -1.5 ]
+)";
+
+const char* const kCamera = R"(LookAt 0 2.5 6  0 0.5 0  0 1 0
+Camera "perspective" "float fov" 42
+WorldBegin
+)";
+
+class EnvironmentLines : public testing::Test {
+ protected:
+  EnvironmentLines()
+      : folder_(
+            fs::path(testing::TempDir()) /
+            (std::string("penumbra-sky-") + testing::UnitTest::GetInstance()->current_test_info()->name())) {
+    fs::create_directories(folder_);
+  }
+  ~EnvironmentLines() override { fs::remove_all(folder_); }
+
+  /// A dim map with some texels of its own brightness.
+  void write_map(int width, int height, const std::vector<std::tuple<int, int, float>>& bright) const {
+    FilmImage map;
+    map.width = width;
+    map.height = height;
+    map.window = {0, 0, width, height};
+    for (int i = 0; i < width * height; ++i)
+      for (int c = 0; c < 3; ++c)
+        map.rgb.push_back(0.2f + 0.1f * float(c) + 0.3f * float((i / width + i % width) % 4));
+    for (const auto& [x, y, value] : bright)
+      for (size_t c = 0; c < 3; ++c) map.rgb[3 * (size_t(y) * size_t(width) + size_t(x)) + c] = value;
+    ASSERT_TRUE(write_exr(folder_ / "map.exr", map, {}).ok());
+  }
+  ScenePtr scene(const std::string& light, const std::string& shapes = kOverAFloor) const {
+    std::ofstream(folder_ / "scene.pbrt") << kCamera << light << shapes;
+    return test::load(folder_ / "scene.pbrt");
+  }
+  static test::AgreementSpec how() {
+    test::AgreementSpec how;
+    how.width = 48;
+    how.height = 32;
+    how.tile = 16;
+    return how;
+  }
+  fs::path folder_;
+};
+
+const std::vector<std::string> kEveryMix = {"bsdf:1+sa:2",
+                                            "sa:3",
+                                            "line-sa@u:2",
+                                            "line-sa@v:2",
+                                            "bsdf:1+line-sa@v:1",
+                                            "sa:1+line-sa@u:1/power",
+                                            "line-sa@u:1+line-sa@v:1",
+                                            "line-sa@u:1+line-sa@v:1/average",
+                                            "bsdf:1+line-sa@u:1/free"};
+/// Without those that find a sun by the cosine alone.
+const std::vector<std::string> kForSuns = {"bsdf:1+sa:2",          "sa:3",
+                                           "line-sa@v:2",          "bsdf:1+line-sa@v:1",
+                                           "sa:1+line-sa@u:1",     "line-sa@v:1+line-sa@u:1",
+                                           "sa:1+line-sa@v:1/free"};
+
+TEST_F(EnvironmentLines, AConstantSkyOverAnOccluder) {
+  test::expect_agreement(scene("LightSource \"infinite\" \"rgb L\" [ 0.5 0.7 1 ]\n"), kEveryMix, how());
+}
+
+TEST_F(EnvironmentLines, ADimMapTurnedAndMirrored) {
+  write_map(16, 8, {{3, 2, 6.f}});
+  test::expect_agreement(scene("AttributeBegin Rotate 37 1 2 3 Scale -1 1 1\n"
+                               "LightSource \"infinite\" \"string mapname\" \"map.exr\" AttributeEnd\n"),
+                         kEveryMix, how());
+}
+
+TEST_F(EnvironmentLines, ASunlikeTexel) {
+  write_map(64, 32, {{9, 6, 1e5f}});
+  test::expect_agreement(scene("AttributeBegin Rotate -90 1 0 0\n"
+                               "LightSource \"infinite\" \"string mapname\" \"map.exr\" AttributeEnd\n"),
+                         kForSuns, how());
+}
+
+TEST_F(EnvironmentLines, SunsAtThePolesAndOnTheEquator) {
+  // Odd and few rows: the equator halves one.
+  write_map(9, 5, {{0, 0, 50.f}, {4, 4, 80.f}, {8, 2, 30.f}});
+  for (const char* turn : {"", "Rotate -90 1 0 0\n", "Rotate 90 1 0 0\n"})
+    test::expect_agreement(scene(std::string("AttributeBegin ") + turn +
+                                 "LightSource \"infinite\" \"string mapname\" \"map.exr\" AttributeEnd\n"),
+                           kForSuns, how());
+}
+
+TEST_F(EnvironmentLines, AnEqualAreaMap) {
+  write_map(24, 24, {{7, 11, 300.f}});
+  test::expect_agreement(scene("AttributeBegin Rotate -90 1 0 0\n"
+                               "LightSource \"infinite\" \"string filename\" \"map.exr\" AttributeEnd\n"),
+                         kForSuns, how());
+}
+
+TEST_F(EnvironmentLines, ThroughWhatTransmitsAndBehindCutOuts) {
+  write_map(16, 8, {{3, 2, 20.f}});
+  test::expect_agreement(
+      scene(
+          "LightSource \"infinite\" \"string mapname\" \"map.exr\"\n",
+          R"(Texture "holes" "float" "checkerboard" "float uscale" 4 "float vscale" 4 "float tex1" 0 "float tex2" 1
+Material "translucent"
+Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ] "point P" [ -4 0 -4  -4 0 4  4 0 4  4 0 -4 ]
+Material "matte"
+Shape "trianglemesh" "texture alpha" "holes" "integer indices" [ 0 1 2 0 2 3 ]
+  "point P" [ -1 0 1  1 0 1.2  1 2 1.2  -1 2 1 ] "float uv" [ 0 0 1 0 1 1 0 1 ]
+)"),
+      kForSuns, how());
+}
+
+/// Beside an area light, lines are that light's: as many of them with a sky as without.
+TEST_F(EnvironmentLines, BesideAnAreaLightTheSkyHasPoints) {
+  const std::string lamp = R"(AttributeBegin AreaLightSource "diffuse" "rgb L" [ 3 2 1 ]
+Shape "quad" "point o" [ -1 2.5 -1 ] "vector u" [ 2 0 0 ] "vector v" [ 0 0 1 ] AttributeEnd
+)";
+  const std::string sky = "LightSource \"infinite\" \"rgb L\" [ 0.5 0.7 1 ]\n";
+  const auto lines = [&](const std::string& lights) {
+    const ScenePtr made = scene(lights);
+    return test::render(*made, test::job(16, 12, {"line-sa@u:1"}, 4)).costs[0].line_queries;
+  };
+  EXPECT_GT(lines(sky), 0u);
+  EXPECT_GT(lines(lamp), 0u);
+  EXPECT_EQ(lines(lamp + sky), lines(lamp));
+}
+
+TEST_F(EnvironmentLines, AFogUnderASky) {
+  test::AgreementSpec less = how();
+  less.width = 32;
+  test::expect_agreement(
+      scene(R"(MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [ 0.1 0.1 0.1 ]
+  "rgb sigma_s" [ 0.3 0.3 0.3 ]
+LightSource "infinite" "rgb L" [ 0.5 0.7 1 ]
+AttributeBegin MediumInterface "fog" "" Material "interface"
+Shape "sphere" "float radius" 2 AttributeEnd
+)"),
+      {"bsdf:1+sa:1", "line-sa@u:1", "line-sa@v:1", "bsdf:1+line-sa@u:1"}, less);
+}
+
+}  // namespace
+}  // namespace penumbra
