@@ -89,7 +89,9 @@ class Hidden {
     const double nearest = std::min(t0, t1) - reach, farthest = std::max(t0, t1) + reach;
     if (farthest <= 0 || nearest >= 1) return kHidesNothing;
     if (nearest <= 0 && holds_x()) return {0, 1};
-    for (const double w : {0., 1.}) touch_ball(centre(w), s_.radius(w));
+    // Of thin strands the plane mostly cuts the side alone.
+    if (w_lo_ == 0) touch_ball(centre(0), s_.radius(0));
+    if (w_hi_ == 1) touch_ball(centre(1), s_.radius(1));
     if (s_.has_side()) touch_side();
     if (nearest <= 0) look_along_chord();
     if (farthest >= 1) crossings(s_, {fan_.x + fan_.a, fan_.chord}, [&](double v) { hull_.add(v); });
