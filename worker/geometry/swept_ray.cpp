@@ -53,6 +53,14 @@ int covers_of_triangle(const SweptRay& ray, const Vec3f p[3], TimeCover covers[k
     const Vec3d q[3] = {Vec3d(p[0]) - o, Vec3d(p[1]) - o, Vec3d(p[2]) - o};
     for (int e = 0; e < 3; ++e) edges[e][at] = d.dot(q[e].cross(q[(e + 1) % 3]));
   }
+  // Most triangles are passed by on one side: a quadratic has one sign where its Bernstein coefficients have.
+  bool left = false, right = false;
+  for (const double* e : edges) {
+    const double control = 2 * e[1] - 0.5 * (e[0] + e[2]);
+    left |= e[0] > 0 && control > 0 && e[2] > 0;
+    right |= e[0] < 0 && control < 0 && e[2] < 0;
+  }
+  if (left && right) return 0;
   double ends[8] = {0};
   int n = 1;
   for (const double* e : edges) Quadratic::through(e[0], e[1], e[2]).roots(ends, n);
