@@ -35,7 +35,8 @@ std::string figures_text(const std::string& name, const ErrorFigures& e) {
   return text + '\n';
 }
 
-/// Means over the bins of path length, where both files have the same: {"relmse","mse","each":[relMSE…]}, else null.
+/// Means over the bins of path length, where both files have the same: {"relmse","mse","each":[relMSE…]},
+/// else null.
 absl::StatusOr<Json> bins_json(const CompareOptions& o) {
   const absl::StatusOr<ExrBins> bins = read_exr_bins(o.image), references = read_exr_bins(o.reference);
   if (!bins.ok() || !references.ok() || bins->transient != references->transient) return nullptr;
@@ -59,8 +60,8 @@ absl::StatusOr<std::string> compare_files(const CompareOptions& o) {
   std::string text = figures_text("image", whole);
   ASSIGN_OR_RETURN(json["bins"], bins_json(o));
   if (const Json& bins = json["bins"]; !bins.is_null())
-    text += fmt::format("{:12}  relMSE {:.6g}  MSE {:.6g} (means over {} bins)\n", "bins", bins["relmse"].get<double>(),
-                        bins["mse"].get<double>(), bins["each"].size());
+    text += fmt::format("{:12}  relMSE {:.6g}  MSE {:.6g} (means over {} bins)\n", "bins",
+                        bins["relmse"].get<double>(), bins["mse"].get<double>(), bins["each"].size());
   json["regions"] = Json::object();
   for (const std::string& word : o.regions) {
     ASSIGN_OR_RETURN(const Region region, parse_region("--region", word));

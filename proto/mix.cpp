@@ -111,9 +111,10 @@ absl::Status parse_combination(std::string_view word, Mix& mix) {
       return fault(word, "the width of smooth= and smooth-ease= must be a positive number or auto");
     mix.smooth_width = *width;
   } else {
-    return fault(word,
-                 "unknown combination; there are balance, free, power, average, smooth=WIDTH|auto, "
-                 "smooth-ease=WIDTH|auto, and after it lens=point|line, medium=point|line and motion=point|line");
+    return fault(
+        word,
+        "unknown combination; there are balance, free, power, average, smooth=WIDTH|auto, "
+        "smooth-ease=WIDTH|auto, and after it lens=point|line, medium=point|line and motion=point|line");
   }
   return absl::OkStatus();
 }

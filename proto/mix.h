@@ -11,15 +11,15 @@
 namespace penumbra {
 
 enum class StrategyKind {
-  kBsdf,                 ///< `bsdf`: direction from the material's lobes
-  kArea,                 ///< `area`: point uniform on the light's surface
-  kSolidAngle,           ///< `sa`: point uniform in the solid angle of the light's shape
-  kLineArea,             ///< `line-area@DEG`: chord at DEG from edge u, offset by chord length
-  kLineSolidAngleU,      ///< `line-sa@u`: chord parallel to edge u, uniform solid angle
-  kLineSolidAngleV,      ///< `line-sa@v`: chord parallel to edge v, uniform solid angle
-  kLineUniform,          ///< `line-uniform@DEG`: as kLineArea, but offset uniform across the light
-  kLineAnalytic,         ///< `line-analytic@DEG`: Billen & Dutré 2016
-  kVisibleArea,          ///< `visible-area`: point uniform in the solid angle of what is visible of the light
+  kBsdf,             ///< `bsdf`: direction from the material's lobes
+  kArea,             ///< `area`: point uniform on the light's surface
+  kSolidAngle,       ///< `sa`: point uniform in the solid angle of the light's shape
+  kLineArea,         ///< `line-area@DEG`: chord at DEG from edge u, offset by chord length
+  kLineSolidAngleU,  ///< `line-sa@u`: chord parallel to edge u, uniform solid angle
+  kLineSolidAngleV,  ///< `line-sa@v`: chord parallel to edge v, uniform solid angle
+  kLineUniform,      ///< `line-uniform@DEG`: as kLineArea, but offset uniform across the light
+  kLineAnalytic,     ///< `line-analytic@DEG`: Billen & Dutré 2016
+  kVisibleArea,      ///< `visible-area`: point uniform in the solid angle of what is visible of the light
 };
 
 /// True where the strategy chooses a line first and knows its visible part (`visible-area` has no line).
@@ -36,15 +36,15 @@ enum class Combination { kBalance, kFree, kPower, kAverage, kSmooth };
 /// How `smooth=` falls to 0: the paper's cubic smoothstep, or `smooth-ease=`, the ease-in 2t − t².
 enum class SmoothShape { kCubic, kEaseIn };
 
-/// How single scattering in media is lit: at points of the camera's ray, or on the parts of it that a point of a
-/// light sees, which are known exactly. Nothing where there are no media.
+/// How single scattering in media is lit: at points of the camera's ray, or on the parts of it that a point
+/// of a light sees, which are known exactly. Nothing where there are no media.
 enum class MediumSampling { kPoint, kLine };
-/// How the lens of a camera that has one is sampled: by points of it, or by chords of it, along which what is seen
-/// is known exactly. Nothing where the camera is a pinhole.
+/// How the lens of a camera that has one is sampled: by points of it, or by chords of it, along which what is
+/// seen is known exactly. Nothing where the camera is a pinhole.
 enum class LensSampling { kPoint, kLine };
 
-/// How the time while the shutter is open is sampled where something moves: by points in time, or by the intervals
-/// of time in which a camera ray sees one thing, which are known. Nothing where nothing moves.
+/// How the time while the shutter is open is sampled where something moves: by points in time, or by the
+/// intervals of time in which a camera ray sees one thing, which are known. Nothing where nothing moves.
 enum class MotionSampling { kPoint, kLine };
 
 struct Mix {
@@ -61,9 +61,8 @@ struct Mix {
   int samples() const;  ///< light samples per shading point and light
 };
 
-/// Reads the grammar of interface.md: strategy[:count] joined by `+`, then /combination, then /lens=point|line,
-/// /medium=point|line and /motion=point|line.
-/// InvalidArgument names the word at fault.
+/// Reads the grammar of interface.md: strategy[:count] joined by `+`, then /combination, then
+/// /lens=point|line, /medium=point|line and /motion=point|line. InvalidArgument names the word at fault.
 absl::StatusOr<Mix> parse_mix(std::string_view text);
 
 /// The normal form: counts and combination always written, lens=line, medium=line and

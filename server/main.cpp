@@ -168,9 +168,10 @@ absl::Status serve(Options options) {
     ASSIGN_OR_RETURN(store, open_sqlite_store(folder.database(), durability));
   } else if (std::filesystem::exists(folder.database())) {
     // Its jobs would be out of sight, and retention would take their blobs.
-    return invalid_input("--database: {} was used without it and has jobs of its own in {}: give another --store, "
-                         "or delete that file together with its jobs",
-                         options.store, folder.database());
+    return invalid_input(
+        "--database: {} was used without it and has jobs of its own in {}: give another --store, "
+        "or delete that file together with its jobs",
+        options.store, folder.database());
   }
   ASSIGN_OR_RETURN(BlobFolder blobs, BlobFolder::open(folder.blobs(), durability));
   Coordinator coordinator(std::move(store), std::move(blobs), options.scheduler, now);

@@ -49,7 +49,7 @@ struct ResultShape {
   std::vector<int64_t> passes;  ///< per mix
   /// Per mix: of each block of pixels (proto/blocks.h); empty, or none of a mix: the mix's passes everywhere.
   std::vector<std::vector<int32_t>> block_passes = {};
-  std::vector<int> bins;        ///< per mix
+  std::vector<int> bins;  ///< per mix
 };
 
 /// What an operator may want to read of.

@@ -80,8 +80,9 @@ ScenePtr load(const std::string& path) {
 }
 
 ScenePtr load_text(const std::string& text) {
-  const auto folder = std::filesystem::temp_directory_path() /
-                      ("penumbra-test-" + std::to_string(getpid()) + "-" + std::to_string(std::hash<std::string>{}(text)));
+  const auto folder =
+      std::filesystem::temp_directory_path() /
+      ("penumbra-test-" + std::to_string(getpid()) + "-" + std::to_string(std::hash<std::string>{}(text)));
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "scene.pbrt") << text;
   ScenePtr scene = load((folder / "scene.pbrt").string());

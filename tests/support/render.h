@@ -19,7 +19,8 @@ struct Rendered {
   std::vector<std::vector<FilmImage>> bins;  ///< of each mix, of a job with Transient
 };
 
-/// Renders all tiles on two threads; groups of `group` passes. Of a mix `auto`, each tile takes the next candidate.
+/// Renders all tiles on two threads; groups of `group` passes. Of a mix `auto`, each tile takes the next
+/// candidate.
 Rendered render(const Scene& scene, const JobSpec& job, int64_t group = 1);
 
 /// Loads a scene file; a failure fails the test and returns null.

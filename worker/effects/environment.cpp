@@ -17,7 +17,9 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-double luminance(const Rgb& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
+double luminance(const Rgb& c) {
+  return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
+}
 
 /// Direction <-> unit square. Equirectangular: u = φ/2π, v = θ/π, z up (pbrt-v3 §12.6). Equal-area:
 /// Clarberg 2008, the octahedron whose texels all have the same solid angle (pbrt-v4 §3.8.3).
@@ -105,8 +107,7 @@ namespace {
 /// Reads a map as linear RGB; grey maps are spread over the channels.
 absl::Status read_map(const std::string& path, int& width, int& height, std::vector<Rgb>& texels) {
   OIIO::ImageBuf image(path);
-  if (!image.read(0, 0, true, OIIO::TypeDesc::FLOAT))
-    return absl::InvalidArgumentError(image.geterror());
+  if (!image.read(0, 0, true, OIIO::TypeDesc::FLOAT)) return absl::InvalidArgumentError(image.geterror());
   const OIIO::ImageSpec& spec = image.spec();
   width = spec.width;
   height = spec.height;
@@ -149,8 +150,10 @@ absl::StatusOr<Environment> Environment::build(const LightEntity& light, const S
     ASSIGN_OR_RETURN(e.scale_, to_rgb(*radiance, description, files));
   }
   if (const Param* scale = light.params.find("scale")) {
-    if (scale->numbers.size() >= 3) e.scale_ *= Rgb(float(scale->numbers[0]), float(scale->numbers[1]), float(scale->numbers[2]));
-    else e.scale_ *= float(light.params.number("scale", 1));
+    if (scale->numbers.size() >= 3)
+      e.scale_ *= Rgb(float(scale->numbers[0]), float(scale->numbers[1]), float(scale->numbers[2]));
+    else
+      e.scale_ *= float(light.params.number("scale", 1));
   }
   // A portal changes no picture, only how soon it converges: pbrt looks through it alone.
   if (const Param* portal = light.params.find("portal"))
@@ -171,8 +174,10 @@ absl::StatusOr<Environment> Environment::build(const LightEntity& light, const S
     return invalid_input("{}: environment map '{}': {}", at, name, message_of(s));
   map->equal_area = v4 && map->width == map->height;
   map->tabulate();
-  if (map->rows.back() > 0) e.map_ = std::move(map);
-  else e.scale_ = Rgb(0);
+  if (map->rows.back() > 0)
+    e.map_ = std::move(map);
+  else
+    e.scale_ = Rgb(0);
   return e;
 }
 

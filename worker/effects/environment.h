@@ -14,7 +14,7 @@
 namespace penumbra {
 
 struct EnvironmentSample {
-  Vec3f wi;        ///< unit, world space
+  Vec3f wi;  ///< unit, world space
   Rgb radiance;
   double pdf = 0;  ///< sr⁻¹
 };

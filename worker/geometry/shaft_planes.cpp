@@ -48,32 +48,38 @@ LightPolygon LightPolygon::triangle(const Vec3f& p0, const Vec3f& p1, const Vec3
   return of({Vec3d(p0), Vec3d(p1), Vec3d(p2), Vec3d(p2)}, light, light_primitives);
 }
 
-// The slack: how far beside the pyramid (x, light) can a triangle lie and still hide something from a chord of
-// the light? Let F be the distance of the farthest corner, H the height of x over the light's plane.
+// The slack: how far beside the pyramid (x, light) can a triangle lie and still hide something from a chord
+// of the light? Let F be the distance of the farthest corner, H the height of x over the light's plane.
 //
 // 1. hidden_by_triangle computes g = N·q, β = (N×A)·q and t = (N×(A-B))·q of each vertex, each to within
 //    5 u |c|₁ reach of its coefficients c (line_fan.cpp: 3 roundings of products and sums, 1 of c, 1 of q);
-//    |c|₁ <= √3 |c|. So what it computes is exact for a vertex that is moved by at most e = 5√3 u reach in each
-//    of three directions: along N, and in the fan's plane across A and across the chord.
+//    |c|₁ <= √3 |c|. So what it computes is exact for a vertex that is moved by at most e = 5√3 u reach in
+//    each of three directions: along N, and in the fan's plane across A and across the chord.
 // 2. Where an edge crosses the plane: (g β' + g' β) / (g + g') has three more roundings, of terms that are no
-//    larger than |N×A| reach; the same for t. That moves the crossing by 3 u reach in the last two directions.
-// 3. What is off by d across A and by d across the chord is off by no more than 2d / sin(A, chord) in the plane.
-//    The sine is the distance of x from the chord's line over |A|: at least H / F. Together with e along N that
-//    is less than 3 (5√3 + 3) u reach F/H < 36 u reach F/H. The same for B, whose sine has the same bound.
-// 4. The quotient β/t and the thresholds `near` and `light`: one rounding each, u F along the chord and u reach
+//    larger than |N×A| reach; the same for t. That moves the crossing by 3 u reach in the last two
+//    directions.
+// 3. What is off by d across A and by d across the chord is off by no more than 2d / sin(A, chord) in the
+// plane.
+//    The sine is the distance of x from the chord's line over |A|: at least H / F. Together with e along N
+//    that is less than 3 (5√3 + 3) u reach F/H < 36 u reach F/H. The same for B, whose sine has the same
+//    bound.
+// 4. The quotient β/t and the thresholds `near` and `light`: one rounding each, u F along the chord and u
+// reach
 //    across it; crossings near x are decided in double.
-// 5. Boxes and triangles are held against the faces in single precision, with |n|₁ = 1: 1 rounding of n, 1 of the
-//    offset; triangles 1 of q and 3 of products and sums; boxes, relative to the tree's centre, 3 for x there, 3
-//    for the face's value at it and 3 for the sum. kThinnestSide keeps the side's direction to another u. At most
-//    12 u reach.
-// In all less than 56 u reach F/H, since F >= H. The factor is 128: what double precision adds, a few 2^-53 of the
-// same lengths over sines no smaller than H/F, is far below the rest, for F/H < 2^20 (the test of the height).
+// 5. Boxes and triangles are held against the faces in single precision, with |n|₁ = 1: 1 rounding of n, 1 of
+// the
+//    offset; triangles 1 of q and 3 of products and sums; boxes, relative to the tree's centre, 3 for x
+//    there, 3 for the face's value at it and 3 for the sum. kThinnestSide keeps the side's direction to
+//    another u. At most 12 u reach.
+// In all less than 56 u reach F/H, since F >= H. The factor is 128: what double precision adds, a few 2^-53
+// of the same lengths over sines no smaller than H/F, is far below the rest, for F/H < 2^20 (the test of the
+// height).
 //
-// What the query itself is off by does not grow with reach: `rounding`, in u (largest + F), largest being that of
-// the light's coordinates. A chord's ends are rounded to single precision: √3. The direction of a shadow ray: √3 of
-// F. What lies before the light by less than LightApproach::hides counts is not before it: √3 (1 + 2·2) for the
-// light's vertices and edges, √3 · √3 for x's share in the coordinates of what is met (|v| <= |x| + reach, |x| <= √3
-// largest + F), whose other share, √3 u reach, is in the 128. Sum: below 16.
+// What the query itself is off by does not grow with reach: `rounding`, in u (largest + F), largest being
+// that of the light's coordinates. A chord's ends are rounded to single precision: √3. The direction of a
+// shadow ray: √3 of F. What lies before the light by less than LightApproach::hides counts is not before it:
+// √3 (1 + 2·2) for the light's vertices and edges, √3 · √3 for x's share in the coordinates of what is met
+// (|v| <= |x| + reach, |x| <= √3 largest + F), whose other share, √3 u reach, is in the 128. Sum: below 16.
 void set_up(ShaftPlanes& s, const ShaftQuery& query, double reach) {
   const LightPolygon& light = *query.light;
   s.usable = false;

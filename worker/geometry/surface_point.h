@@ -18,12 +18,12 @@ struct SurfacePoint {
   Vec3f dpdx, dpdy;  ///< per pixel footprint (already scaled for filtering); 0 if unknown
   float dudx = 0, dvdx = 0, dudy = 0, dvdy = 0;
   float front = 0, back = 0;  ///< how far matter reaches along ng and against it: a tube's own, else none
-  Vec3f wo;  ///< unit, towards the viewer
+  Vec3f wo;                   ///< unit, towards the viewer
   PrimitiveId id;
   float time = 0;  ///< of the shutter, in [0,1]: when the point is there
 
-  /// p moved off the surface to the side of `towards`, past its error bound (pbrt-v3 OffsetRayOrigin) and what
-  /// matter there is.
+  /// p moved off the surface to the side of `towards`, past its error bound (pbrt-v3 OffsetRayOrigin) and
+  /// what matter there is.
   Vec3f offset(const Vec3f& towards) const;
 };
 

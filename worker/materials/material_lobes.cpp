@@ -169,7 +169,8 @@ void add(const CoatedDiffuseMaterial& m, const ShadingContext& at, const Rgb& sc
   add_reflection(Rgb(1), facets(m.roughness, at), FresnelDielectric{1, eta}, scale, bsdf);
 }
 
-// Where the hair was hit is v across it: pbrt's curves have it, and so does any surface that is given such uv.
+// Where the hair was hit is v across it: pbrt's curves have it, and so does any surface that is given such
+// uv.
 void add(const HairMaterial& m, const ShadingContext& at, const Rgb& scale, Bsdf& bsdf) {
   const double beta_n = std::clamp(at(m.beta_n), 0.0, 1.0), beta_m = std::clamp(at(m.beta_m), 0.0, 1.0);
   Vec3f sigma_a;

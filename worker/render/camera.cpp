@@ -11,18 +11,26 @@ absl::StatusOr<Camera> Camera::build(const SceneDescription& description, int wi
   const Entity& e = description.camera;
   const std::string at = description.place(e.loc);
   double fov = e.params.number("fov", 90);
-  if (const Param* half = e.params.find("halffov"); half && !half->numbers.empty()) fov = 2 * half->numbers[0];
+  if (const Param* half = e.params.find("halffov"); half && !half->numbers.empty())
+    fov = 2 * half->numbers[0];
   if (!(fov > 0 && fov < 180)) return invalid_input("{}: fov {} must lie between 0 and 180 degrees", at, fov);
 
   // pbrt's screen window: [-1,1] across the shorter axis, wider along the other (pbrt-v3 §6.2).
   const double aspect = e.params.number("frameaspectratio", double(width) / height);
   double x0 = -1, x1 = 1, y0 = -1, y1 = 1;
-  if (aspect > 1) { x0 = -aspect; x1 = aspect; }
-  else { y0 = -1 / aspect; y1 = 1 / aspect; }
+  if (aspect > 1) {
+    x0 = -aspect;
+    x1 = aspect;
+  } else {
+    y0 = -1 / aspect;
+    y1 = 1 / aspect;
+  }
   if (const Param* window = e.params.find("screenwindow")) {
     if (window->numbers.size() != 4) return invalid_input("{}: screenwindow needs 4 numbers", at);
-    x0 = window->numbers[0]; x1 = window->numbers[1];
-    y0 = window->numbers[2]; y1 = window->numbers[3];
+    x0 = window->numbers[0];
+    x1 = window->numbers[1];
+    y0 = window->numbers[2];
+    y1 = window->numbers[3];
   }
   const double scale = std::tan(fov * std::numbers::pi / 360);
 
@@ -55,7 +63,8 @@ Vec3f Camera::direction_at(const Vec2d& pixel) const {
 }
 
 CameraRay Camera::ray(const Vec2d& pixel) const {
-  return {Vec3f(origin_), direction_at(pixel), direction_at(pixel + Vec2d(1, 0)), direction_at(pixel + Vec2d(0, 1)), 0};
+  return {Vec3f(origin_), direction_at(pixel), direction_at(pixel + Vec2d(1, 0)),
+          direction_at(pixel + Vec2d(0, 1)), 0};
 }
 
 }  // namespace penumbra

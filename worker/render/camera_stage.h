@@ -23,8 +23,8 @@ struct CameraDraw {
   const Geometry& geometry;
   QueryCounters& counters;
   int i = 0, n = 1;
-  /// What has carried the camera along with its rays at the pinhole ray's time, row vectors; null: nothing. The
-  /// stage makes rays for where it was.
+  /// What has carried the camera along with its rays at the pinhole ray's time, row vectors; null: nothing.
+  /// The stage makes rays for where it was.
   const Matrix* camera_moved = nullptr;
 };
 
@@ -37,8 +37,8 @@ class CameraStage {
   virtual void rays(const CameraRay& pinhole, const CameraDraw& draw,
                     std::vector<WeightedRay>& out) const = 0;
 
-  /// How many film samples a pass takes for the emission of a pixel that sees a light, where `rays` of a pinhole would
-  /// do; a sample that integrates over part of what blurs the light needs fewer.
+  /// How many film samples a pass takes for the emission of a pixel that sees a light, where `rays` of a
+  /// pinhole would do; a sample that integrates over part of what blurs the light needs fewer.
   virtual int emission_samples(const Mix&, int rays) const { return rays; }
 
   /// A point at `depth` (> 0, along the viewing axis in camera space) is seen at most this far from its

@@ -25,8 +25,8 @@ struct Rendering {
   std::vector<uint8_t> light_pixels;  ///< of the tile (light_pixels.h)
 };
 
-/// Camera rays of a pass for the emission of a pixel that may see a light. Its variance falls with their number,
-/// and such a pixel has little else to pay for.
+/// Camera rays of a pass for the emission of a pixel that may see a light. Its variance falls with their
+/// number, and such a pixel has little else to pay for.
 constexpr int kEmissionRays = 16;
 
 /// Probes look at pixel centres.
@@ -47,8 +47,8 @@ class PixelSampler {
         tracer_(rendering.scene, prepared_, rendering.job.max_depth, counters_, bins_.get()) {}
   PixelSampler(const PixelSampler&) = delete;  // the tracer refers to its neighbours
 
-  /// Radiance times the filter's weight at a pixel of the tile. May be NaN or infinite: whoever adds it up looks
-  /// at that.
+  /// Radiance times the filter's weight at a pixel of the tile. May be NaN or infinite: whoever adds it up
+  /// looks at that.
   Rgb sample(int x, int y, int64_t pass) {
     if (bins_) bins_->clear();
     const JobSpec& job = rendering_.job;

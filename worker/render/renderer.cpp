@@ -36,7 +36,9 @@ const char* shape_name(const LightShape& shape) {
 
 }  // namespace
 
-void SceneDeleter::operator()(Scene* scene) const { delete scene; }
+void SceneDeleter::operator()(Scene* scene) const {
+  delete scene;
+}
 
 absl::StatusOr<ScenePtr> load_scene(const std::string& main_name, const SceneFiles& files,
                                     const LoadOptions& options, LoadReport& report) {
@@ -65,7 +67,8 @@ absl::StatusOr<ScenePtr> build_scene(const SceneDescription& description, const 
   }
   RenderSceneBuilder builder(moves ? still : placed, std::move(effects), files, options, report.warnings);
   ASSIGN_OR_RETURN(ScenePtr scene, builder.build());
-  if (options.strict && !report.warnings.empty()) return invalid_input("--strict: {}", report.warnings.front());
+  if (options.strict && !report.warnings.empty())
+    return invalid_input("--strict: {}", report.warnings.front());
   report.build_seconds = seconds_since(start);
   return scene;
 }
@@ -85,14 +88,15 @@ std::vector<std::string> substitutions(const Scene& scene, const Mix& mix) {
   std::vector<std::string> out;
   if (mix.medium == MediumSampling::kLine && !scene.effects.media)
     out.push_back("medium=line without media: nothing to do");
-  if (mix.lens == LensSampling::kLine && !scene.effects.lens) out.push_back("lens=line on a pinhole: nothing to do");
+  if (mix.lens == LensSampling::kLine && !scene.effects.lens)
+    out.push_back("lens=line on a pinhole: nothing to do");
   if (mix.motion == MotionSampling::kLine && !scene.effects.motion)
     out.push_back("motion=line where nothing moves: nothing to do");
   else if (mix.motion == MotionSampling::kLine && mix.lens == LensSampling::kLine && scene.effects.lens)
     out.push_back("motion=line beside lens=line: chords of the lens, at points in time");
   for (const auto& [key, n] : counts)
-    out.push_back(fmt::format("{} on {} {} light{}: {}", std::get<0>(key), n, std::get<1>(key), n == 1 ? "" : "s",
-                              std::get<2>(key)));
+    out.push_back(fmt::format("{} on {} {} light{}: {}", std::get<0>(key), n, std::get<1>(key),
+                              n == 1 ? "" : "s", std::get<2>(key)));
   return out;
 }
 

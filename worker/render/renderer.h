@@ -16,7 +16,9 @@ namespace penumbra {
 /// A scene ready to be rendered: immutable, shared by the threads of a worker.
 class Scene;
 
-struct SceneDeleter { void operator()(Scene*) const; };
+struct SceneDeleter {
+  void operator()(Scene*) const;
+};
 using ScenePtr = std::unique_ptr<Scene, SceneDeleter>;
 
 struct LoadOptions {
@@ -32,9 +34,9 @@ absl::StatusOr<ScenePtr> build_scene(const SceneDescription& description, const 
                                      const LoadOptions& options, LoadReport& report);
 
 struct TaskOutcome {
-  TileResult pixels;            ///< empty for a pilot
-  std::vector<MixCost> costs;   ///< one per mix; of a pilot, then one per candidate in task.chosen
-  bool cancelled = false;       ///< then nothing else is valid
+  TileResult pixels;           ///< empty for a pilot
+  std::vector<MixCost> costs;  ///< one per mix; of a pilot, then one per candidate in task.chosen
+  bool cancelled = false;      ///< then nothing else is valid
 };
 
 /// Renders a tile task on the calling thread: the mixes' passes in slices, interleaved in an order
@@ -47,7 +49,9 @@ TaskOutcome render_tile(const Scene& scene, const JobSpec& job, const TileTask& 
 std::vector<std::string> substitutions(const Scene& scene, const Mix& mix);
 
 /// What `inspect` counts.
-struct SceneCounts { int64_t lights = 0, triangles = 0, materials = 0; };
+struct SceneCounts {
+  int64_t lights = 0, triangles = 0, materials = 0;
+};
 SceneCounts counts(const Scene& scene);
 
 }  // namespace penumbra

@@ -18,7 +18,7 @@ namespace penumbra {
 
 /// A mesh and what shading must know of it.
 struct SceneMesh {
-  TriangleMesh mesh;          ///< world space, or object space if an object owns it
+  TriangleMesh mesh;  ///< world space, or object space if an object owns it
   int material = -1;
   /// The normal from the vertices' order points against pbrt's orientation (ReverseOrientation, or a
   /// transform that swaps handedness). Vertex normals in the mesh are already turned.
@@ -27,15 +27,15 @@ struct SceneMesh {
 };
 
 struct SceneInstance {
-  Matrix to_world;            ///< at time 0
-  Imath::M33d normals;        ///< inverse transpose of the linear part, for row vectors
+  Matrix to_world;      ///< at time 0
+  Imath::M33d normals;  ///< inverse transpose of the linear part, for row vectors
   bool swaps_handedness = false;
   std::shared_ptr<const AnimatedTransform> motion;  ///< null: it stands
 };
 
 class Scene {
  public:
-  SceneDescription description;   ///< without shapes: camera, film and sampler settings are read per job
+  SceneDescription description;  ///< without shapes: camera, film and sampler settings are read per job
   std::vector<SceneMesh> meshes;
   std::vector<SceneInstance> instances;
   std::optional<Geometry> geometry;
@@ -44,8 +44,8 @@ class Scene {
   LightSet lights;
   Effects effects;
   std::optional<Filter> filter;
-  bool footprints = false;        ///< some texture or bump map wants pixel footprints
-  int64_t triangles = 0;          ///< instances counted as often as they are placed
+  bool footprints = false;  ///< some texture or bump map wants pixel footprints
+  int64_t triangles = 0;    ///< instances counted as often as they are placed
 };
 
 }  // namespace penumbra

@@ -17,7 +17,9 @@ constexpr float gamma(int n) {
   return float(n) * unit / (1 - float(n) * unit);
 }
 
-Vec3f abs(const Vec3f& v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
+Vec3f abs(const Vec3f& v) {
+  return {std::abs(v.x), std::abs(v.y), std::abs(v.z)};
+}
 
 template <class T>
 T blend(const std::vector<T>& values, const uint32_t* index, float b0, float b1, float b2) {
@@ -30,8 +32,8 @@ struct Triangle {
 };
 
 Triangle triangle_of(const TriangleMesh& mesh, const uint32_t* index) {
-  Triangle t{mesh.positions[index[0]], mesh.positions[index[1]], mesh.positions[index[2]],
-             {0, 0}, {1, 0}, {1, 1}};
+  Triangle t{
+      mesh.positions[index[0]], mesh.positions[index[1]], mesh.positions[index[2]], {0, 0}, {1, 0}, {1, 1}};
   if (!mesh.uvs.empty()) {
     t.uv0 = mesh.uvs[index[0]];
     t.uv1 = mesh.uvs[index[1]];
@@ -126,7 +128,8 @@ void set_shading_tangents(SurfacePoint& point) {
 
 }  // namespace
 
-SurfacePoint surface_at(const Scene& scene, const Hit& hit, const Vec3f& direction, const CameraRay* footprint) {
+SurfacePoint surface_at(const Scene& scene, const Hit& hit, const Vec3f& direction,
+                        const CameraRay* footprint) {
   const SceneMesh& scene_mesh = scene.meshes[hit.id.mesh];
   if (scene_mesh.tubes) return tube_surface_at(*scene_mesh.tubes, hit, direction);
   const TriangleMesh& mesh = scene_mesh.mesh;

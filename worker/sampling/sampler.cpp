@@ -11,7 +11,19 @@ namespace {
 constexpr int64_t kMostSamples = (int64_t{1} << 32) - 1;
 
 // What a stream of numbers is for; part of its key.
-enum class Use : uint32_t { kFilm, kLens, kTime, kLight, kChoice, kSelect, kFilmAgain, kLine, kDraw, kAlongLens, kBranch };
+enum class Use : uint32_t {
+  kFilm,
+  kLens,
+  kTime,
+  kLight,
+  kChoice,
+  kSelect,
+  kFilmAgain,
+  kLine,
+  kDraw,
+  kAlongLens,
+  kBranch
+};
 
 /// Key of one stream of a pixel and group. `a` and `b` number the streams of a use.
 uint64_t stream_key(uint64_t key, Use use, uint64_t a = 0, uint64_t b = 0) {

@@ -54,23 +54,23 @@ class DirectLight {
   /// A direction that some strategy found, on its way to its weight.
   struct Candidate {
     LightSample sample;
-    Rgb f{0};           ///< BSDF × cosine × radiance
-    size_t slot = 0;    ///< of the strategy that found it
-    size_t line = 0;    ///< of its own line in the batch, if its strategy is a line
-    double s = 0;       ///< where on that line
+    Rgb f{0};         ///< BSDF × cosine × radiance
+    size_t slot = 0;  ///< of the strategy that found it
+    size_t line = 0;  ///< of its own line in the batch, if its strategy is a line
+    double s = 0;     ///< where on that line
     Sight sight = Sight::kUnknown;
     double visible = 1, smoothing = 1;  ///< see Found
   };
   struct BsdfHit {
-    size_t light = 0;   ///< area emitters first, then environments
+    size_t light = 0;  ///< area emitters first, then environments
     LightSample sample;
     size_t slot = 0;
   };
   /// One light from one point, with the strategies that serve it.
   struct Task {
     const LightView& view;
-    size_t light = 0;       ///< area emitters first, then environments
-    double draws = 1;       ///< expected number of times the light is asked
+    size_t light = 0;  ///< area emitters first, then environments
+    double draws = 1;  ///< expected number of times the light is asked
     /// The draws that fell on it: their samples are some of those of all `draws_in_all` draws, in the pattern
     /// of `stream`. Empty: only what bsdf met counts.
     std::span<const int> turns;
@@ -122,13 +122,13 @@ class DirectLight {
   std::vector<Candidate> candidates_;
   LightSight sight_;
   LineBatch own_lines_, foreign_lines_;
-  std::vector<size_t> foreign_;     ///< row per candidate, a handle per slot
-  std::vector<double> densities_;   ///< row per candidate, a density per slot
-  Rgb integrated_{0};               ///< by analytic lines, of the light being asked
+  std::vector<size_t> foreign_;    ///< row per candidate, a handle per slot
+  std::vector<double> densities_;  ///< row per candidate, a density per slot
+  Rgb integrated_{0};              ///< by analytic lines, of the light being asked
   std::vector<DrawnLight> drawn_;
   std::vector<int> turns_;
-  std::vector<double> expected_;    ///< samples per slot
-  std::vector<bool> line_slots_;    ///< whether it is a line strategy
+  std::vector<double> expected_;  ///< samples per slot
+  std::vector<bool> line_slots_;  ///< whether it is a line strategy
   Combiner combiner_;
   // For arrivals: the parts of a line; of each candidate, its part's bin and its share in the line's visible
   // measure.

@@ -20,8 +20,7 @@ std::optional<LightHit> unhidden(const Geometry& geometry, const LightSet& light
     if (emitter == kNone || !lights.area[emitter].crowded) continue;
     const AreaEmitter& light = lights.area[emitter];
     const LightEnd end = end_on_light(light, m.p, emission_normal(light.shape, m.p), ray.time);
-    if (!geometry.occluded(ray.origin, end, counters))
-      return LightHit{emitter, m.p};
+    if (!geometry.occluded(ray.origin, end, counters)) return LightHit{emitter, m.p};
   }
   return std::nullopt;
 }

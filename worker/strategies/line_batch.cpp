@@ -16,7 +16,8 @@ size_t LineBatch::add(const LightLine& line, const ShadingPoint& point, const Ar
   if (!(line.scale > 0)) return handle;
   const Vec3d x(point.above), normal(point.normal);
   add_part(above_, handle, clip_to_horizon(line, x, normal), point, point.above, emitter);
-  if (point.transmits) add_part(below_, handle, clip_to_horizon(line, x, -normal), point, point.below, emitter);
+  if (point.transmits)
+    add_part(below_, handle, clip_to_horizon(line, x, -normal), point, point.below, emitter);
   return handle;
 }
 
@@ -40,8 +41,10 @@ void LineBatch::add_part(Side& side, size_t line, const Interval& range, const S
 }
 
 void LineBatch::trace(const Geometry& geometry, const Shaft* shaft, QueryCounters& counters) {
-  if (shaft != nullptr) geometry.visible(*shaft, above_.queries, above_.visible, counters);
-  else geometry.visible(above_.queries, above_.visible, counters);
+  if (shaft != nullptr)
+    geometry.visible(*shaft, above_.queries, above_.visible, counters);
+  else
+    geometry.visible(above_.queries, above_.visible, counters);
   if (!below_.queries.empty()) geometry.visible(below_.queries, below_.visible, counters);
   size_t next_above = 0, next_below = 0;
   for (size_t line = 0; line < count_; ++line) {

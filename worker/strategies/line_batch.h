@@ -45,7 +45,10 @@ class LineBatch {
     std::vector<LineQuery> queries;
     std::vector<Part> parts;
     std::vector<IntervalSet> visible;
-    void clear() { queries.clear(); parts.clear(); }
+    void clear() {
+      queries.clear();
+      parts.clear();
+    }
   };
 
   void add_part(Side& side, size_t line, const Interval& range, const ShadingPoint& point, const Vec3f& x,

@@ -26,8 +26,8 @@ struct BsdfStrategy {};
 struct AreaStrategy {};
 /// `sa`: uniform in the solid angle of the shape.
 struct SolidAngleStrategy {};
-/// `visible-area`: uniform in the solid angle of what is visible of a flat light (LightView::region). Where that
-/// is not known it is `sa`.
+/// `visible-area`: uniform in the solid angle of what is visible of a flat light (LightView::region). Where
+/// that is not known it is `sa`.
 struct VisibleAreaStrategy {};
 /// The environment's own sampling by luminance; stands for `area`, `sa` and lines there.
 struct EnvironmentStrategy {};

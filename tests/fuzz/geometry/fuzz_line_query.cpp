@@ -44,8 +44,8 @@ LineQuery with_plane(LineQuery query, const Vec3f& p) {
   return query;
 }
 
-/// The input's own points as ends of chords and as what sees them: chords through vertices, along edges and in
-/// triangles' planes are the common case. Building the hierarchy takes far longer than asking it.
+/// The input's own points as ends of chords and as what sees them: chords through vertices, along edges and
+/// in triangles' planes are the common case. Building the hierarchy takes far longer than asking it.
 std::vector<LineQuery> queries_of(const Vec3f& x, const Vec3f& a, const Vec3f& b, const TriangleMesh& mesh) {
   constexpr size_t kMostPoints = 8;
   std::vector<LineQuery> queries{{x, a, b}, {x, b, a}};

@@ -15,7 +15,7 @@ struct AgreementSpec {
   int tile = 64;
   SamplerKind sampler = SamplerKind::kIndependent;
   std::optional<Transient> transient = {};  ///< then every bin is compared as well
-  PixelRect crop{0, 0, 0, 0};  ///< where the pictures are compared; empty: everywhere
+  PixelRect crop{0, 0, 0, 0};               ///< where the pictures are compared; empty: everywhere
 };
 
 /// Renders the mixes, expects no value that is not finite, and z-tests the block means of all pairs of mixes

@@ -123,7 +123,8 @@ TEST_F(Commands, BinsOfPathLengthAreReplayedAndTheFolderHoldsOneExrPerMix) {
   EXPECT_EQ(json["needs"].back(), Json({{"effect", "transient"}, {"why", "--transient 8,28,10"}}));
   EXPECT_EQ(read("plain/run.json")["transient"], Json(nullptr));
   size_t images = 0;
-  for (const auto& entry : fs::directory_iterator(path("binned"))) images += entry.path().extension() == ".exr";
+  for (const auto& entry : fs::directory_iterator(path("binned")))
+    images += entry.path().extension() == ".exr";
   EXPECT_EQ(images, 2u);
   for (const char* name : {"/sa-1_balance.exr", "/line-sa-u-1_balance.exr"}) {
     const auto plain = read_exr(path("plain") + name), picture = read_exr(path("binned") + name);

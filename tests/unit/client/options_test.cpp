@@ -102,7 +102,8 @@ TEST(MakeJob, EveryFaultNamesItsFlag) {
   EXPECT_THAT(with(&JobOptions::crop, "0,0,65,48"), StartsWith("--crop: "));
   EXPECT_THAT(with(&JobOptions::crop, "5,5"), StartsWith("--crop: "));
   EXPECT_THAT(with(&JobOptions::camera_grid, "0"), StartsWith("--camera-grid: "));
-  for (const char* bins : {"1,2", "1,2,3,4", "2,1,4", "-1,2,4", "0,1,0", "0,1,1025", "0,inf,4", "0,nan,4", "1,1.000001,100"})
+  for (const char* bins :
+       {"1,2", "1,2,3,4", "2,1,4", "-1,2,4", "0,1,0", "0,1,1025", "0,inf,4", "0,nan,4", "1,1.000001,100"})
     EXPECT_THAT(with(&JobOptions::transient, bins), StartsWith("--transient: ")) << bins;
   EXPECT_THAT(with(&JobOptions::max_depth, "0"), StartsWith("--max-depth: "));
   EXPECT_THAT(with(&JobOptions::tile, "5000"), StartsWith("--tile: "));

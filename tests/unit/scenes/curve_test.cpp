@@ -175,8 +175,9 @@ TEST(Curve, ARibbonIsAStripAcrossItsNormals) {
     EXPECT_GT(normal.dot(mesh->normals[mesh->indices[i]]), 0);
     area += normal.length() / 2;
   }
-  // Each triangle has a cross-section for its base and its apex on an edge, which turns by θ' = π/6 at 1/4 from the
-  // axis: √(1 + (θ'/4)²) of the flat strip, where the helicoid has the mean of √(1 + (v θ')²) over |v| <= 1/4.
+  // Each triangle has a cross-section for its base and its apex on an edge, which turns by θ' = π/6 at 1/4
+  // from the axis: √(1 + (θ'/4)²) of the flat strip, where the helicoid has the mean of √(1 + (v θ')²) over
+  // |v| <= 1/4.
   EXPECT_NEAR(area, 1.5 * std::sqrt(1 + std::pow(M_PI / 6 / 4, 2)), 1e-3);
 }
 
