@@ -43,6 +43,8 @@ TEST(AnimatedTransform, TheShorterWayRound) {
   const auto turned = [](double degrees) { return rotation(degrees, {0, 0, 1}).value(); };
   const auto motion = AnimatedTransform::between(turned(0), turned(270), {0, 1}).value();
   expect_near(motion.at(0.5), turned(-45));
+  // By way of half a turn, where a rotation's two quaternions change places.
+  expect_near(AnimatedTransform::between(turned(170), turned(200), {0, 1}).value().at(0.5), turned(185));
 }
 
 TEST(AnimatedTransform, ATranslationKeepsTheLinearPartToTheBit) {
