@@ -121,8 +121,11 @@ Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ] "point P" [ -1 0 -1  -1 0
   for (size_t m = 0; m < mixes.size(); ++m)
     for (size_t i = 0; i < r.images[m].rgb.size(); ++i) {
       ASSERT_GT(r.images[m].rgb[i], 0);
-      for (size_t b = 0; b < 20; ++b)
-        if (b != 10) ASSERT_EQ(r.bins[m][b].rgb[i], 0) << mixes[m] << ", bin " << b;
+      for (size_t b = 0; b < 20; ++b) {
+        if (b != 10) {
+          ASSERT_EQ(r.bins[m][b].rgb[i], 0) << mixes[m] << ", bin " << b;
+        }
+      }
       ASSERT_NEAR(r.bins[m][10].rgb[i], r.images[m].rgb[i], 1e-5 * r.images[m].rgb[i]);
     }
 }
