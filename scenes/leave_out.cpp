@@ -5,6 +5,7 @@
 
 #include "proto/status.h"
 #include "scenes/needs.h"
+#include "scenes/standing.h"
 
 namespace penumbra {
 namespace {
@@ -37,13 +38,6 @@ bool is_bump(const Param& param) {
 void lens(Scene& scene) {
   if (scene.camera.type == "realistic") scene.camera.type = "perspective";
   std::erase_if(scene.camera.params.all, [](const Param& p) { return p.name == "lensradius"; });
-}
-
-void motion(Scene& scene) {
-  const auto stand = [](Placement& placement) { placement.end = placement.start; };
-  stand(scene.camera_placement);
-  for (InstanceEntity& instance : scene.instances) stand(instance.placement);
-  change_each_shape(scene, [&](ShapeEntity& shape) { stand(shape.placement); });
 }
 
 void environment(Scene& scene) {
@@ -96,14 +90,18 @@ struct Effect {
 };
 
 constexpr Effect kEffects[] = {
-    {"lens", lens},     {"motion", motion}, {"environment", environment},
-    {"curves", curves}, {"media", media},   {"textures", textures},
-    {"alpha", alpha},   {"bump", bump},     {"specular", specular},
+    {"lens", lens},   {"environment", environment}, {"curves", curves},
+    {"media", media}, {"textures", textures},       {"alpha", alpha},
+    {"bump", bump},   {"specular", specular},
 };
 
 }  // namespace
 
 absl::Status leave_out(std::string_view name, SceneDescription& description) {
+  if (name == "motion") {
+    ASSIGN_OR_RETURN(description, standing(description, false));
+    return absl::OkStatus();
+  }
   for (const Effect& effect : kEffects) {
     if (effect.name != name) continue;
     effect.leave_out(description);

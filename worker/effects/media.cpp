@@ -6,6 +6,7 @@
 #include <map>
 
 #include "proto/status.h"
+#include "scenes/curve.h"
 #include "scenes/each_shape.h"
 #include "scenes/mesh.h"
 
@@ -98,7 +99,12 @@ absl::StatusOr<Media> Media::build(const SceneDescription& description, const Sc
   Builder builder(description, files);
   RETURN_IF_ERROR(builder.read_media(media.media_));
   media.at_camera_ = builder.index(description.camera_medium);
-  for (const ShapeEntity* shape : shapes) media.surfaces_.push_back(builder.sides(*shape));
+  for (const ShapeEntity* shape : shapes) {
+    MediumSides sides = builder.sides(*shape);
+    // A tube is opaque to what leaves it, light goes on from its other side: no ray is ever inside.
+    if (has_tubes(*shape)) sides.inside = sides.outside;
+    media.surfaces_.push_back(sides);
+  }
   for (const ShapeEntity& shape : description.shapes)
     RETURN_IF_ERROR(builder.add_boundary(shape, shape.placement.start));
   for (const InstanceEntity& instance : description.instances) {

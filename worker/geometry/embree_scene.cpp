@@ -230,7 +230,17 @@ struct Neighbours {
   Imath::Box3d box;
   PrimitiveId own;
   uint32_t primitives;
+  LightPlane plane;
   bool found = false;
+
+  /// The rest of a flat mesh that emits: it hides nothing, and rays that end before the plane do not meet it.
+  bool in_the_plane(const Vec3d p[3]) const {
+    const Vec3d corner(surfaces->vertex(own.mesh, own.primitive, 0));
+    for (int c = 0; c < 3; ++c)
+      if (std::abs(plane.normal.dot(p[c] - corner)) > plane.rounding + rounding_along(plane.normal, p[c]))
+        return false;
+    return true;
+  }
 };
 
 /// Embree's callback for each triangle whose bounds may meet the query's sphere.
@@ -253,6 +263,7 @@ bool find_neighbour(RTCPointQueryFunctionArguments* arguments) {
   } else {
     Vec3d p[3];
     looking.surfaces->triangle(id, 0, p);
+    if (!placed && mesh == looking.own.mesh && looking.in_the_plane(p)) return false;
     for (const Vec3d& corner : p) bounds.extendBy(corner);
   }
   if (!bounds.intersects(looking.box)) return false;
@@ -457,7 +468,8 @@ Imath::Box3f EmbreeScene::bounds(const PrimitiveId& first, uint32_t primitives) 
   return box;
 }
 
-bool EmbreeScene::anything_meets(const Imath::Box3d& box, const PrimitiveId& own, uint32_t primitives) const {
+bool EmbreeScene::anything_meets(const Imath::Box3d& box, const PrimitiveId& own, uint32_t primitives,
+                                 const LightPlane& plane) const {
   for (const auto& moving : parts_->all.moving)
     for (size_t i = 1; i < moving->boxes.size(); ++i) {
       // Between two times it is between the two boxes.
@@ -466,7 +478,7 @@ bool EmbreeScene::anything_meets(const Imath::Box3d& box, const PrimitiveId& own
       if (box.intersects(both)) return true;
     }
   const Vec3d centre = box.center();
-  Neighbours neighbours{&parts_->surfaces, box, own, primitives};
+  Neighbours neighbours{&parts_->surfaces, box, own, primitives, plane};
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
   RTCPointQuery query;

@@ -27,7 +27,9 @@ class EmbreeScene {
   bool has_alpha() const;
   /// Do the bounds of any triangle, or of an instance that moves at any time, meet the box, but those of a
   /// light's own `primitives`?
-  bool anything_meets(const Imath::Box3d& box, const PrimitiveId& own, uint32_t primitives) const;
+  /// Nor does what lies with the light in one plane and mesh count.
+  bool anything_meets(const Imath::Box3d& box, const PrimitiveId& own, uint32_t primitives,
+                      const LightPlane& plane) const;
   void bounds(Vec3f& lo, Vec3f& hi) const;
   /// Of `primitives` triangles from the given one on; not of instances.
   Imath::Box3f bounds(const PrimitiveId& first, uint32_t primitives) const;

@@ -139,7 +139,7 @@ LightPlace Geometry::place_of(const PrimitiveId& light, uint32_t primitives, con
   Vec3f scene_lo, scene_hi;
   bounds(scene_lo, scene_hi);
   const Vec3d margin(LightApproach::closest(own, Vec3d(scene_hi) - Vec3d(scene_lo)));
-  place.crowded = parts_->embree->anything_meets({lo - margin, hi + margin}, light, primitives);
+  place.crowded = parts_->embree->anything_meets({lo - margin, hi + margin}, light, primitives, {normal, place.rounding});
   return place;
 }
 

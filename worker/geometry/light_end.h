@@ -22,7 +22,9 @@ class LightApproach {
   const Vec3f& way() const { return way_; }
 
   /// Nothing but the light itself can be met where there is doubt.
-  bool alone() const { return !end_.crowded && kRounding * lengths_ <= kLeastDoubt * height_; }
+  bool alone() const {
+    return !end_.crowded && kRounding * lengths_ <= kLeastDoubt * height_ && norm1(way_) <= kSteepest * height_;
+  }
   /// Then, where a ray ends before the light, in lengths of the way.
   float before() const { return 1 - kRounding * lengths_ / height_; }
 
@@ -41,13 +43,18 @@ class LightApproach {
   bool hides(const Vec3d surface[3]) const;
 
   /// What is farther than this from a light with coordinates up to `largest` is never in doubt for rays of
-  /// extents up to `reach`, where a ray is alone.
+  /// extents up to `reach`, where a ray is alone: it ends kRounding · lengths / height of its way before the
+  /// light, which is kSteepest times kRounding · lengths at most, in whatever direction it comes.
   static double closest(const Vec3d& largest, const Vec3d& reach) {
-    return 2 * double{kRounding} * (norm1(largest) + norm1(reach));  // twice: the rounding of that distance
+    // Twice: the rounding of that distance.
+    return 2 * double{kSteepest} * double{kRounding} * (norm1(largest) + norm1(reach));
   }
 
  private:
   static constexpr float kRounding = 0x1p-19f, kLeastDoubt = 0x1p-11f, kMostDoubt = 0.5f;
+  /// Way over height of rays that may be alone: those that graze the light would need more room than lights
+  /// mostly have.
+  static constexpr float kSteepest = 8;
   template <class T>
   static T norm1(const Imath::Vec3<T>& v) {
     return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);

@@ -33,7 +33,7 @@ LightSet far_lights(const Scene& scene) {
 MediumLines::Far::Far(const Scene& scene, const PreparedMix& prepared, MediumWalk* walk,
                       QueryCounters& counters, Arrivals* arrivals)
     : lights(far_lights(scene)),
-      mix(prepared.mix(), lights),
+      mix(prepared.mix(), lights, !scene.lights.area.empty()),
       direct({*scene.geometry, lights, walk, arrivals}, mix, counters) {}
 
 MediumLines::MediumLines(const Scene& scene, const PreparedMix& mix, MediumWalk* walk,

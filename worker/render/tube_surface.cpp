@@ -61,6 +61,7 @@ SurfacePoint tube_surface_at(const Tubes& tubes, const Hit& hit, const Vec3f& di
 
   SurfacePoint point;
   point.id = hit.id;
+  point.time = hit.time;
   point.wo = -direction;
   point.dndu = point.dndv = point.dpdx = point.dpdy = Vec3f(0);
   Vec3d p = segment.centre(at.w) + at.normal * radius;

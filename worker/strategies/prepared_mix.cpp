@@ -2,10 +2,10 @@
 
 namespace penumbra {
 
-PreparedMix::PreparedMix(const Mix& mix, const LightSet& lights)
+PreparedMix::PreparedMix(const Mix& mix, const LightSet& lights, bool beside_area_lights)
     : combination_(mix.combination), smoothing_{mix.smooth_shape, mix.smooth_width}, mix_(mix) {
   // Beside area lights, lines are theirs: on the sky they cost more than they bring (README.md).
-  const bool lines = lights.area.empty();
+  const bool lines = lights.area.empty() && !beside_area_lights;
   for (const StrategyCount& s : mix.strategies) {
     counts_.push_back(s.count);
     environment_.push_back(fit_environment(s, lines));

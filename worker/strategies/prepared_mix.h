@@ -11,7 +11,8 @@ namespace penumbra {
 
 class PreparedMix {
  public:
-  PreparedMix(const Mix& mix, const LightSet& lights);
+  /// `beside_area_lights`: the scene has some that are not among `lights`.
+  PreparedMix(const Mix& mix, const LightSet& lights, bool beside_area_lights = false);
 
   struct Slot {
     const Strategy& strategy;

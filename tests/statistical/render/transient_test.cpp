@@ -121,7 +121,9 @@ Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ] "point P" [ -1 0 -1  -1 0
       // The quadrature's own error: pieces on a bin's edge, 1e-3 of a bin.
       const double error = 4.5 * std::sqrt(variance) + 1e-3 * expected[b];
       EXPECT_NEAR(sum, expected[b], error) << mixes[m] << ", bin " << b;
-      if (b > 3 && b < 12) EXPECT_GT(sum, 0);
+      if (b > 3 && b < 12) {
+        EXPECT_GT(sum, 0);
+      }
     }
 }
 

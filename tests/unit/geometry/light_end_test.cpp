@@ -184,16 +184,44 @@ TEST(LightEnd, AClosedLightHidesItsFarSide) {
 }
 
 /// A light that has nothing close to it needs no judging; the answers are the same.
+/// A lip beside a light hides it from low places as lines see it, however shallow the rays come.
+TEST(LightEnd, ALipBesideItHidesItFromLowPlaces) {
+  const Frame f{{0, 0, 0}, {0, 2, 0}, {0.1, 0, 0}, {0, 0, -1}};
+  const TriangleMesh light = f.quad(0, 1, 0, 1, 0);
+  TriangleMesh lip;  // 0.0004 beside the edge v = 0, from the light's plane down
+  for (const Vec3f& p : {Vec3f(-0.0004f, -1, 0), Vec3f(-0.0004f, 3, 0), Vec3f(-0.0004f, 3, -0.004f),
+                         Vec3f(-0.0004f, -1, -0.004f)})
+    lip.positions.push_back(p);
+  lip.indices = {0, 1, 2, 0, 2, 3};
+  TriangleMesh floor;  // the scene is as large as the rays are long
+  floor.positions = {{-12, -5, -5}, {12, -5, -5}, {0, 5, -5}};
+  floor.indices = {0, 1, 2};
+  const Geometry geometry = geometry_of({{&light}, {&lip}, {&floor}});
+  const PrimitiveId id{kNone, 0, 0};
+  const LightPlace place = geometry.place_of(id, 2, f.n);
+  QueryCounters counters;
+  int seen = 0, rays = 0;
+  for (int i = 0; i < 100; ++i)
+    for (int k = 0; k < 100; ++k) {
+      // Below the straight line from the light's far edge over the lip's: nothing of the light is seen.
+      const Vec3f x(-10, 0.5f + 0.01f * float(i), -0.1f);
+      const Vec3d p = f.o + f.u * ((k + 0.5) / 100) + f.v * ((k * 37 % 100 + 0.5) / 100);
+      seen += !geometry.occluded(x, {p, {f.n, place.rounding}, id, 2, place.crowded}, counters);
+      ++rays;
+    }
+  EXPECT_EQ(seen, 0) << "of " << rays << (place.crowded ? ", crowded" : "");
+}
+
 TEST(LightEnd, CrowdedIsWhatHasSomethingClose) {
   std::mt19937 engine(5);
   const Frame f{{-0.5, 2, -0.5}, {1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
   const TriangleMesh light = f.quad(0, 1, 0, 1, 0), floor = f.quad(-2, 3, -2, 3, 2);
   const PrimitiveId id{kNone, 0, 0};
-  for (const double before : {0.5, 1e-3, 1e-4, 1e-6, 0.0, -1e-6, -1e-3, -0.1}) {
+  for (const double before : {0.5, 1e-2, 1e-3, 1e-6, 0.0, -1e-6, -1e-3, -0.1}) {
     const TriangleMesh cover = f.quad(0.25, 0.75, 0.25, 0.75, before);
     const Geometry geometry = geometry_of({{&light}, {&floor}, {&cover}});
     const bool crowded = geometry.place_of(id, 2, f.n).crowded;
-    EXPECT_EQ(crowded, std::abs(before) < 3e-5) << before;
+    EXPECT_EQ(crowded, std::abs(before) < 5e-4) << before;
     QueryCounters counters;
     std::uniform_real_distribution<double> uniform(-0.4, 1.4);
     for (int i = 0; i < kRays; ++i) {

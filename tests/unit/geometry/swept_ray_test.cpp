@@ -39,7 +39,7 @@ TEST(SweptRay, CoversAreThoseOfTheRayAtEachTime) {
       apart += covered != meets(ray, s, p);
     }
   }
-  EXPECT_GT(met, 100'000);
+  EXPECT_GT(met, 50'000);
   EXPECT_GT(twice, 2) << "some leave a triangle and come back";
   EXPECT_LE(apart, 2);
 }

@@ -85,12 +85,12 @@ TEST_F(Weights, SmoothingOfALineIsThatOfTheLineThroughItsPoint) {
       const LightView view(point, light);
       for (double u = 0.5 / 16; u < 1; u += 1.0 / 16) {
         LineBatch own, through;
-        own.add(choose_line(strategy, view, u), point, light);
+        own.add(choose_line(strategy, view, u), point, &light);
         own.trace(*scene_->geometry, nullptr, counters_);
         for (double s = 0.5 / 32; s < 1; s += 1.0 / 32) {
           const LightLine& l = own.line(0);
           through.clear();
-          through.add(line_through(strategy, view, l.a + s * (l.b - l.a)), point, light);
+          through.add(line_through(strategy, view, l.a + s * (l.b - l.a)), point, &light);
           through.trace(*scene_->geometry, nullptr, counters_);
           const double a = line_factor(smoothing, l, own.visible(0), s);
           const double b = line_factor(smoothing, through.line(0), through.visible(0),
