@@ -13,6 +13,7 @@
 #include "client/scene_defaults.h"
 #include "client/submission.h"
 #include "proto/status.h"
+#include "scenes/curve.h"
 #include "scenes/mesh.h"
 #include "scenes/needs.h"
 #include "scenes/parser.h"
@@ -34,7 +35,7 @@ struct InspectOptions {
 /// cylinder, and one for each triangle of a mesh, because that is what is sampled. Triangles: as stored,
 /// those of an instanced object once.
 struct Counts {
-  int64_t lights = 0, triangles = 0, materials = 0, shapes = 0, instances = 0;
+  int64_t lights = 0, triangles = 0, materials = 0, shapes = 0, instances = 0, curves = 0;
 };
 
 bool is_one_light(const std::string& type) {
@@ -46,6 +47,10 @@ absl::Status count_shape(const ShapeEntity& shape, const SceneDescription& scene
                          Counts& counts, std::vector<std::string>& warnings) {
   ++counts.shapes;
   int64_t triangles = 0;
+  if (shape.type == "curve") {
+    ++counts.curves;
+    RETURN_IF_ERROR(curve_of(shape, scene, files, warnings).status());
+  }
   if (has_mesh(shape)) {
     ASSIGN_OR_RETURN(const TriangleMesh mesh, make_mesh(shape, scene, files, warnings));
     triangles = static_cast<int64_t>(mesh.triangles());
@@ -96,7 +101,7 @@ absl::Status add_costs(InspectOptions& o, Inspection& inspection, std::stop_toke
   Progress progress(Progress::style_for(o.quiet));
   std::vector<std::string> effects;
   for (const Need& need : inspection.needs) effects.push_back(need.effect);
-  progress.note(fmt::format("{} runs of {} CPU s: with everything and without each effect, {} times",
+  progress.note(fmt::format("{} runs of {} of CPU time: with everything and without each effect, {} times",
                             rounds * static_cast<int64_t>(effects.size() + 1), o.job.budget, rounds));
   ASSIGN_OR_RETURN(const std::unique_ptr<Backend> backend, open_backend({}, o.cluster));
   RETURN_IF_ERROR(backend->server->upload(submission.bundle, stop));
@@ -136,6 +141,7 @@ Json inspection_json(const Inspection& i) {
           {"warnings", i.warnings},
           {"shapes", i.counts.shapes},
           {"instances", i.counts.instances},
+          {"curves", i.counts.curves},
           {"samples", i.defaults.passes},
           {"max_depth", i.defaults.max_depth},
           {"mix", i.defaults.mix ? Json(label(*i.defaults.mix)) : Json(nullptr)}};
@@ -147,6 +153,7 @@ std::string inspection_text(const Inspection& i) {
   text += fmt::format("lights       {}\ntriangles    {}\nmaterials    {}\nshapes       {}, {} instances\n",
                       i.counts.lights, i.counts.triangles, i.counts.materials, i.counts.shapes,
                       i.counts.instances);
+  if (i.counts.curves > 0) text += fmt::format("curves       {}\n", i.counts.curves);
   if (i.defaults.mix) text += fmt::format("mix          {}\n", label(*i.defaults.mix));
   text += i.needs.empty() ? "needs        nothing beyond surfaces and lights\n" : "needs\n";
   for (size_t n = 0; n < i.needs.size(); ++n) {
