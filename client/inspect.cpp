@@ -49,7 +49,8 @@ absl::Status count_shape(const ShapeEntity& shape, const SceneDescription& scene
   int64_t triangles = 0;
   if (shape.type == "curve") {
     ++counts.curves;
-    RETURN_IF_ERROR(curve_of(shape, scene, files, warnings).status());
+    std::vector<std::string> said;  // by each of thousands of strands
+    RETURN_IF_ERROR(curve_of(shape, scene, files, said).status());
   }
   if (has_mesh(shape)) {
     ASSIGN_OR_RETURN(const TriangleMesh mesh, make_mesh(shape, scene, files, warnings));
