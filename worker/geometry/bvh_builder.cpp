@@ -1,11 +1,10 @@
 #include "worker/geometry/bvh_builder.h"
 
-#include <embree3/rtcore.h>
-
 #include <new>
 #include <string>
 
 #include "proto/status.h"
+#include "worker/geometry/embree.h"
 
 namespace penumbra {
 namespace {
@@ -56,18 +55,11 @@ BuiltLeaf only_leaf(size_t count) {
   return leaf;
 }
 
-struct BvhDeleter {
-  void operator()(RTCBVHTy* bvh) const { rtcReleaseBVH(bvh); }
-};
-
 }  // namespace
 
 struct TreeBuilder::Device {
-  RTCDevice handle;
-  explicit Device(int threads) : handle(rtcNewDevice(("threads=" + std::to_string(threads)).c_str())) {
-    PENUMBRA_CHECK(handle != nullptr);
-  }
-  ~Device() { rtcReleaseDevice(handle); }
+  DeviceHandle handle;
+  explicit Device(int threads) : handle(make_device(threads)) { PENUMBRA_CHECK(handle != nullptr); }
 };
 
 TreeBuilder::TreeBuilder(int threads) : threads_(threads) {}
@@ -81,7 +73,7 @@ absl::Status TreeBuilder::build(std::span<const Box> boxes, int leaf_size,
     return absl::OkStatus();
   }
   if (!device_) device_ = std::make_unique<Device>(threads_);
-  const std::unique_ptr<RTCBVHTy, BvhDeleter> bvh(rtcNewBVH(device_->handle));
+  const BvhHandle bvh(rtcNewBVH(device_->handle.get()));
   std::vector<RTCBuildPrimitive> primitives = primitives_of(boxes);
 
   RTCBuildArguments arguments = rtcDefaultBuildArguments();
@@ -102,7 +94,7 @@ absl::Status TreeBuilder::build(std::span<const Box> boxes, int leaf_size,
   const void* root = rtcBuildBVH(&arguments);
   if (root == nullptr) {
     return make_status(absl::StatusCode::kResourceExhausted, "line hierarchy over {} boxes: Embree error {}",
-                       boxes.size(), static_cast<int>(rtcGetDeviceError(device_->handle)));
+                       boxes.size(), static_cast<int>(rtcGetDeviceError(device_->handle.get())));
   }
   use(*static_cast<const BuiltNode*>(root));
   return absl::OkStatus();

@@ -1,14 +1,11 @@
 #include "worker/geometry/crossings.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
-#include <string>
 
 #include "proto/status.h"
+#include "worker/geometry/embree_geometry.h"
 
 namespace penumbra {
 namespace {
@@ -35,12 +32,8 @@ void collect(const RTCFilterFunctionNArguments* arguments) {
 }  // namespace
 
 struct CrossingScene::Parts {
-  RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
-  ~Parts() {
-    if (scene != nullptr) rtcReleaseScene(scene);
-    if (device != nullptr) rtcReleaseDevice(device);
-  }
+  DeviceHandle device;
+  SceneHandle scene;
 };
 
 CrossingScene::CrossingScene() : parts_(std::make_unique<Parts>()) {}
@@ -51,28 +44,19 @@ CrossingScene::~CrossingScene() = default;
 absl::StatusOr<CrossingScene> CrossingScene::build(std::span<const TriangleMesh> meshes, int threads) {
   CrossingScene crossing;
   Parts& parts = *crossing.parts_;
-  parts.device = rtcNewDevice(("threads=" + std::to_string(threads)).c_str());
-  if (parts.device == nullptr) return absl::InternalError("Embree gives no device");
-  parts.scene = rtcNewScene(parts.device);
-  rtcSetSceneFlags(parts.scene, RTC_SCENE_FLAG_ROBUST);
+  parts.device = make_device(threads);
+  if (!parts.device) return absl::InternalError("Embree gives no device");
+  parts.scene.reset(rtcNewScene(parts.device.get()));
+  rtcSetSceneFlags(parts.scene.get(), RTC_SCENE_FLAG_ROBUST);
   for (uint32_t m = 0; m < meshes.size(); ++m) {
-    const TriangleMesh& mesh = meshes[m];
-    RTCGeometry geometry = rtcNewGeometry(parts.device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    void* positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                              sizeof(Vec3f), mesh.positions.size());
-    void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                            3 * sizeof(uint32_t), mesh.triangles());
-    if (positions != nullptr && indices != nullptr) {
-      std::memcpy(positions, mesh.positions.data(), mesh.positions.size() * sizeof(Vec3f));
-      std::memcpy(indices, mesh.indices.data(), mesh.indices.size() * sizeof(uint32_t));
-      rtcSetGeometryIntersectFilterFunction(geometry, collect);
-      rtcCommitGeometry(geometry);
-      rtcAttachGeometryByID(parts.scene, geometry, m);
-    }
-    rtcReleaseGeometry(geometry);
+    const GeometryHandle geometry = make_triangles(parts.device.get(), meshes[m], nullptr);
+    if (!geometry) continue;  // the device says so below
+    rtcSetGeometryIntersectFilterFunction(geometry.get(), collect);
+    rtcCommitGeometry(geometry.get());
+    rtcAttachGeometryByID(parts.scene.get(), geometry.get(), m);
   }
-  rtcCommitScene(parts.scene);
-  if (const RTCError error = rtcGetDeviceError(parts.device); error != RTC_ERROR_NONE)
+  rtcCommitScene(parts.scene.get());
+  if (const RTCError error = rtcGetDeviceError(parts.device.get()); error != RTC_ERROR_NONE)
     return make_status(absl::StatusCode::kResourceExhausted, "Embree error {} while building",
                        static_cast<int>(error));
   return crossing;
@@ -92,7 +76,7 @@ void CrossingScene::crossings(const Ray& ray, std::vector<Crossing>& out) const 
   query.ray.time = 0, query.ray.mask = ~0u, query.ray.id = 0, query.ray.flags = 0;
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(parts_->scene, &collecting.context, &query);
+  rtcIntersect1(parts_->scene.get(), &collecting.context, &query);
   std::sort(out.begin(), out.end(),
             [](const Crossing& a, const Crossing& b) { return a.distance < b.distance; });
 }

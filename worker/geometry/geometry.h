@@ -1,7 +1,7 @@
 #pragma once
 // The scene's surfaces as the renderer asks for them: nearest hit, shadow segment, line query. The only
-// room that knows Embree (embree_scene.cpp traces with it, crossings.cpp too, through boundaries of media;
-// bvh_builder.cpp builds with it; nothing else does).
+// room that knows Embree, behind embree.h: what that is included by traces with it, or builds with it; this
+// header and all others know nothing of it.
 #include <cstdint>
 #include <functional>
 #include <memory>

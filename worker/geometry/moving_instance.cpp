@@ -66,12 +66,13 @@ void occluded(const RTCOccludedFunctionNArguments* arguments) {
 
 }  // namespace
 
-RTCGeometry make_moving_instance(RTCDevice device, MovingInstance& instance) {
+GeometryHandle make_moving_instance(RTCDevice device, MovingInstance& instance) {
   RTCBounds b;
   rtcGetSceneBounds(instance.object, &b);
   instance.boxes = instance.motion->boxes(
       {Vec3d(b.lower_x, b.lower_y, b.lower_z), Vec3d(b.upper_x, b.upper_y, b.upper_z)});
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+  GeometryHandle handle(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER));
+  const RTCGeometry geometry = handle.get();
   rtcSetGeometryUserPrimitiveCount(geometry, 1);
   rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(instance.boxes.size()));
   rtcSetGeometryUserData(geometry, &instance);
@@ -79,7 +80,7 @@ RTCGeometry make_moving_instance(RTCDevice device, MovingInstance& instance) {
   rtcSetGeometryIntersectFunction(geometry, intersect);
   rtcSetGeometryOccludedFunction(geometry, occluded);
   rtcCommitGeometry(geometry);
-  return geometry;
+  return handle;
 }
 
 }  // namespace penumbra

@@ -2,11 +2,11 @@
 // An instance that moves, for Embree: a geometry of ours whose rays are carried into the object at their own
 // time. Embree's own moving instances interpolate in single precision with approximate sines; these stand
 // where line queries and shading have them, to a rounding.
-#include <embree3/rtcore.h>
-
 #include <memory>
+#include <vector>
 
 #include "scenes/animated_transform.h"
+#include "worker/geometry/embree.h"
 
 namespace penumbra {
 
@@ -17,8 +17,8 @@ struct MovingInstance {
   std::vector<MovedBox> boxes;
 };
 
-/// A committed geometry that the caller releases; hits carry its geometry number as instID[0]. The object is
+/// A committed geometry; hits carry its geometry number as instID[0]. The object is
 /// committed and not empty.
-RTCGeometry make_moving_instance(RTCDevice device, MovingInstance& instance);
+GeometryHandle make_moving_instance(RTCDevice device, MovingInstance& instance);
 
 }  // namespace penumbra
