@@ -5,6 +5,7 @@
 
 #include "client/report_image.h"
 #include "film/png.h"
+#include "film/srgb.h"
 #include "proto/status.h"
 
 namespace penumbra {
@@ -64,16 +65,11 @@ double white_of(const std::vector<std::vector<std::vector<float>>>& books) {
   return *at;
 }
 
-/// IEC 61966-2-1.
-uint8_t srgb(double linear) {
-  const double v = std::clamp(linear, 0.0, 1.0);
-  const double encoded = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
-  return static_cast<uint8_t>(std::lround(255 * encoded));
-}
-
 std::string png_of(const std::vector<float>& frame, const Size& size, double white) {
   std::vector<uint8_t> rgb(frame.size());
-  std::transform(frame.begin(), frame.end(), rgb.begin(), [white](float v) { return srgb(v / white); });
+  std::transform(frame.begin(), frame.end(), rgb.begin(), [white](float v) {
+    return static_cast<uint8_t>(std::lround(255 * srgb_encoded(v / white)));
+  });
   return base64(png_bytes(size.width, size.height, rgb));
 }
 

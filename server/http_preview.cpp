@@ -8,6 +8,7 @@
 
 #include "film/own_error.h"
 #include "film/png.h"
+#include "film/srgb.h"
 #include "proto/status.h"
 #include "server/assembler.h"
 #include "server/job_report.h"
@@ -49,8 +50,7 @@ std::vector<uint8_t> srgb_table() {
   std::vector<uint8_t> table;
   for (size_t i = 0; i <= kSteps; ++i) {
     const double v = static_cast<double>(i) / kSteps;
-    const double encoded = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
-    table.push_back(static_cast<uint8_t>(std::lround(255 * encoded)));
+    table.push_back(static_cast<uint8_t>(std::lround(255 * srgb_encoded(v))));
   }
   return table;
 }

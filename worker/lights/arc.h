@@ -31,7 +31,7 @@ class ArcTable {
   /// The cell's row at s of a meridian, counted from the first pole.
   int row_at(const Meridian& m, double s) const;
   double value_at(const Meridian& m, double s) const { return value(m.column, row_at(m, s)); }
-  /// ∫ value sin α dα over [lo,hi] of a meridian's s; sums of positive terms.
+  /// ∫ value sin α dα over [lo,hi] of a meridian's s, to 2^-53 of the whole meridian's.
   double measure(const Meridian& m, double lo, double hi) const;
   /// s at fraction v of that measure.
   double sample(const Meridian& m, double lo, double hi, double v) const;
