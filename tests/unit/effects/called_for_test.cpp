@@ -66,5 +66,25 @@ TEST(CalledFor, AStageIsCalledOncePerCameraRayAndChangesNothingByItself) {
   for (size_t m = 0; m < 2; ++m) EXPECT_EQ(plain.images[m].rgb, staged.images[m].rgb);
 }
 
+/// No ray is ever inside a tube, so what medium pbrt's text puts there does not matter: a strand lit from
+/// behind, in fog.
+TEST(CalledFor, TheInsideOfATubeIsNoMedium) {
+  const auto picture = [](const std::string& inside) {
+    const ScenePtr scene = test::load_text("LookAt 0 0 -4  0 0 0  0 1 0\nMediumInterface \"\" \"fog\"\n" +
+                                           std::string(R"(Camera "perspective" "float fov" 30
+WorldBegin
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [ 0.5 0.5 0.5 ] "rgb sigma_s" [ 0.1 0.1 0.1 ]
+AttributeBegin AreaLightSource "diffuse" "rgb L" [ 50 50 50 ]
+Shape "quad" "point o" [ -1 -1 3 ] "vector u" [ 0 2 0 ] "vector v" [ 2 0 0 ] AttributeEnd
+Material "hair" "float eumelanin" 0.1
+MediumInterface ")") + inside + R"(" "fog"
+Shape "curve" "string type" "cylinder" "float width" 0.5 "point P" [ 0 -2 0  0 -1 0  0 1 0  0 2 0 ]
+)");
+    EXPECT_TRUE(scene);
+    return test::render(*scene, test::job(16, 16, {"sa:2"}, 4)).images[0].rgb;
+  };
+  EXPECT_EQ(picture(""), picture("fog"));
+}
+
 }  // namespace
 }  // namespace penumbra

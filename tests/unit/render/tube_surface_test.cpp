@@ -95,6 +95,16 @@ TEST(TubeSurface, AShadowRayLeavesItsOwnTube) {
         }
 }
 
+TEST(TubeSurface, IsAskedAtTheTimeOfItsRay) {
+  for (const bool facing : {false, true}) {
+    const OneTube one(0.05, 1, 0, facing);
+    each_hit(one, [&](const SurfacePoint&, const Ray& ray, Hit hit, Draw&) {
+      hit.time = 0.625f;
+      EXPECT_EQ(tube_surface_at(one.tubes, hit, ray.direction).time, 0.625f);
+    });
+  }
+}
+
 TEST(TubeSurface, HasPbrtsParametersAndTheHairsOffset) {
   const OneTube one(0.05, 1, 0, false);
   const struct { Vec3d axis; } frame{Vec3d(1, 0.5, -0.2).normalized()};
