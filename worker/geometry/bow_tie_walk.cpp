@@ -73,15 +73,13 @@ class BowTieWalk {
     walk(tree, tie, [&](uint32_t block) { test(tree.blocks[block], tie, instance); });
   }
 
-  void test(const TriangleBlock& block, const BowTie& tie, uint32_t instance) {
-    counters_.triangles_tested += kWidth;
-    for (int lane = 0; lane < kWidth; ++lane) {
-      Vec3f p[3];
-      for (int c = 0; c < 3; ++c) p[c] = {block.p[c][0][lane], block.p[c][1][lane], block.p[c][2][lane]};
+  void test(const PairBlock& block, const BowTie& tie, uint32_t instance) {
+    counters_.triangles_tested += kTrianglesPerBlock;
+    block.for_each_triangle([&](const std::array<Vec3f, 3>& p, uint32_t id) {
       CutPiece pieces[2];
-      for (int n = cut_by_triangle(tie, p, pieces); n > 0; --n)
-        envelope_.insert(pieces[n - 1], {instance, block.id[lane]});
-    }
+      for (int n = cut_by_triangle(tie, p.data(), pieces); n > 0; --n)
+        envelope_.insert(pieces[n - 1], {instance, id});
+    });
   }
 
   /// Leaves that the bow-tie may meet before what is known, from near to far within each node.

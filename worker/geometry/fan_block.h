@@ -1,6 +1,6 @@
 #pragma once
-// What sixteen triangles hide of a chord: hidden_by_triangle (line_fan.cpp), lane by lane to the last bit,
-// and the union of such intervals.
+// What sixteen pairs of triangles hide of a chord: hidden_by_triangle (line_fan.cpp) of both, to the last
+// bit, and the union of such intervals.
 #include "worker/geometry/line_bvh.h"
 #include "worker/geometry/simd.h"
 #include "worker/geometry/visible_set.h"
@@ -10,10 +10,17 @@ namespace {
 
 /// Lanes of a block that single precision cannot decide.
 struct Doubt {
-  const TriangleBlock* block;
-  uint16_t lanes;       ///< counted from `at`, as are the next
-  uint16_t odd1, odd2;  ///< lanes whose odd vertex is 1, or 2
-  uint16_t at;          ///< first lane of the register
+  const PairBlock* block;
+  uint16_t lanes;        ///< counted from `at`, as are the next
+  uint16_t shared, to0;  ///< lanes in which the plane separates corners 0 and 1; 0 and the triangle's own
+  uint8_t at;            ///< first lane of the register
+  uint8_t which;         ///< triangle of the pair
+
+  /// Which corner of the pair is alone on its side of the plane.
+  int odd_corner(int lane) const {
+    if (!(shared >> lane & 1)) return 2 + which;
+    return to0 >> lane & 1 ? 0 : 1;
+  }
 };
 
 /// Hidden intervals that wait to be taken from the visible set, of at most kBlocks blocks.
@@ -54,8 +61,8 @@ class HiddenIntervals {
   }
 
  private:
-  // Every lane of every block, and the whole vector that a compressed store writes.
-  static constexpr int kCapacity = (kBlocks + 1) * kWidth;
+  // Both triangles of every lane of every block, and the whole vector that a compressed store writes.
+  static constexpr int kCapacity = (2 * kBlocks + 1) * kWidth;
 
   /// Subtracts the connected stretches of a union of intervals.
   static bool take(VisibleSet& visible, R::Floats lo, R::Floats hi) {
@@ -83,7 +90,7 @@ class HiddenIntervals {
   static constexpr float kNoLo = 2, kNoHi = -1;
 
   int count_ = 0, doubt_count_ = 0;
-  Doubt doubts_[kBlocks * kWidth / Register::kLanes + 1];
+  Doubt doubts_[2 * kBlocks * kWidth / Register::kLanes + 1];
   alignas(64) float lo_[kCapacity], hi_[kCapacity];
 };
 
@@ -96,6 +103,11 @@ class FanBlock {
   void set_up(const LineFan& fan) {
     fan_ = &fan;
     near_ = R::all(fan.near);
+    // An edge's crossing is a mean of its corners' t, with three roundings: with all corners this far inside
+    // the limits, it lies within them as place() says.
+    near_sure_ = fan.near * (1 + 0x1p-20f);
+    light_sure_ = fan.light_near * (1 - 0x1p-20f);
+    light_past_ = fan.light_far * (1 + 0x1p-20f);
     light_near_ = R::all(fan.light_near);
     light_far_ = R::all(fan.light_far);
     for (int k = 0; k < 3; ++k) {
@@ -108,11 +120,19 @@ class FanBlock {
 
   /// Adds what the block hides within [v0,v1], and the lanes that settle() must look at. True if one of the
   /// stretches is wider than `widest`, which it then becomes.
-  bool hidden(const TriangleBlock& block, const Excluded& excluded, float v0, float v1, HiddenIntervals& out,
+  bool hidden(const PairBlock& block, const Excluded& excluded, float v0, float v1, HiddenIntervals& out,
               float& widest) const {
     bool wider = false;
     for (int at = 0; at < kWidth; at += R::kLanes)
       wider |= part_hidden(block, at, excluded, v0, v1, out, widest);
+    return wider;
+  }
+  /// The same, for blocks of triangles of which most reach behind x or beyond the light.
+  bool hidden_by_large(const PairBlock& block, const Excluded& excluded, float v0, float v1,
+                       HiddenIntervals& out, float& widest) const {
+    bool wider = false;
+    for (int at = 0; at < kWidth; at += R::kLanes)
+      wider |= part_in_doubt(block, at, excluded, v0, v1, out, widest);
     return wider;
   }
 
@@ -120,12 +140,11 @@ class FanBlock {
   void settle(HiddenIntervals& found, float v0, float v1) const {
     for (const Doubt& d : found.doubts()) {
       for (uint32_t lanes = d.lanes; lanes != 0; lanes &= lanes - 1) {
-        const int lane = d.at + std::countr_zero(lanes);
-        Vec3f p[3];
-        for (int c = 0; c < 3; ++c)
-          p[c] = {d.block->p[c][0][lane], d.block->p[c][1][lane], d.block->p[c][2][lane]};
-        const int odd = d.odd1 >> (lane - d.at) & 1 ? 1 : d.odd2 >> (lane - d.at) & 1 ? 2 : 0;
-        const Interval hidden = hidden_near_ends(*fan_, p, odd);
+        const int lane = std::countr_zero(lanes), in_block = d.at + lane;
+        if (!d.block->has(in_block, d.which)) continue;
+        const std::array<Vec3f, 3> p = d.block->triangle(in_block, d.which);
+        const Interval hidden =
+            hidden_near_ends(*fan_, p.data(), d.block->vertex_of(in_block, d.which, d.odd_corner(lane)));
         const Interval clamped{std::max(hidden.lo, v0), std::min(hidden.hi, v1)};
         if (clamped.lo < clamped.hi) found.add(clamped);
       }
@@ -143,52 +162,158 @@ class FanBlock {
     R::Mask front, behind, beyond, clear;  ///< clear: in front, before the light
   };
 
+  /// The fan's coordinates of pairs' corners, |g| apart from its sign.
+  struct Corners {
+    R::Floats g[4], beta[4], t[4];
+  };
+  /// Lanes in which the fan's plane separates corners 0 and 1, and each triangle's own corner from corner 0;
+  /// and those in which it cuts a triangle that is not the light's.
+  struct Sides {
+    R::Mask shared, to0[2], cut[2];
+  };
+  /// What the triangles of pairs hide, before it is clamped: from v1 to v2, in any order.
+  struct Ends {
+    R::Floats v1[2], v2[2];
+    R::Mask sure[2];  ///< they hide something, and single precision says what
+    R::Mask joined;   ///< both do, and what they hide meets at the shared edge
+  };
+
+  [[gnu::always_inline]] void set_corners(const R::Floats q[4][3], Corners& c) const {
+    for (int i = 0; i < 4; ++i) {
+      c.g[i] = R::abs(c.g[i]);
+      c.beta[i] = dot(beta_, q[i]);
+      c.t[i] = dot(t_, q[i]);
+    }
+  }
+  [[gnu::always_inline]] Sides sides_of(const PairBlock& block, int at, const Excluded& excluded,
+                                        R::Floats q[4][3], Corners& c) const {
+    R::Mask below[4];
+    for (int i = 0; i < 4; ++i) {
+      for (int k = 0; k < 3; ++k) q[i][k] = R::add(minus_x_[k], R::load(block.p[i][k] + at));
+      c.g[i] = dot(g_, q[i]);
+      below[i] = R::less(c.g[i], R::all(0));
+    }
+    Sides sides;
+    sides.shared = R::differ(below[0], below[1]);
+    for (int i = 0; i < 2; ++i) {
+      sides.to0[i] = R::differ(below[2 + i], below[0]);
+      sides.cut[i] = R::either(sides.shared, sides.to0[i]);
+    }
+    if (block.may_hold(excluded)) {
+      for (int i = 0; i < 2; ++i)
+        sides.cut[i] =
+            R::without(sides.cut[i], R::in_range(block.id[i] + at, excluded.first, excluded.count));
+    }
+    return sides;
+  }
+
   /// Lanes [at, at + R::kLanes) of a block.
-  [[gnu::always_inline]] bool part_hidden(const TriangleBlock& block, int at, const Excluded& excluded,
-                                          float v0, float v1, HiddenIntervals& out, float& widest) const {
-    R::Floats q[3][3], g[3], beta[3], t[3];
-    R::Mask below[3];
-    for (int c = 0; c < 3; ++c) {
-      for (int k = 0; k < 3; ++k) q[c][k] = R::add(minus_x_[k], R::load(block.p[c][k] + at));
-      g[c] = dot(g_, q[c]);
-      below[c] = R::less(g[c], R::all(0));
-    }
-    const R::Mask d1 = R::differ(below[0], below[1]), d2 = R::differ(below[0], below[2]);
-    R::Mask cut = R::either(d1, d2);
-    if (excluded.count != 0)
-      cut = R::without(cut, R::in_range(block.id + at, excluded.first, excluded.count));
+  [[gnu::always_inline]] bool part_hidden(const PairBlock& block, int at, const Excluded& excluded, float v0,
+                                          float v1, HiddenIntervals& out, float& widest) const {
+    R::Floats q[4][3];
+    Corners c;
+    const Sides sides = sides_of(block, at, excluded, q, c);
+    const R::Mask cut = R::either(sides.cut[0], sides.cut[1]);
     if (R::bits(cut) == 0) return false;
-    // The odd vertex out is 0 if it differs from both, else the one that differs from 0.
-    const R::Mask odd0 = R::both(d1, d2), odd2 = R::without(d2, d1);
-    for (int c = 0; c < 3; ++c) {
-      g[c] = R::abs(g[c]);
-      beta[c] = dot(beta_, q[c]);
-      t[c] = dot(t_, q[c]);
+    set_corners(q, c);
+    const R::Floats least = R::min(R::min(c.t[0], c.t[1]), R::min(c.t[2], c.t[3]));
+    const R::Floats most = R::max(R::max(c.t[0], c.t[1]), R::max(c.t[2], c.t[3]));
+    // All corners clearly behind x, or beyond the light: so is what is cut of them.
+    const R::Mask within =
+        R::both(cut, R::both(R::less(R::all(-near_sure_), most), R::less(least, R::all(light_past_))));
+    // Mostly all lie clearly between x and the light, and what is cut with them.
+    const R::Mask between = R::both(R::less(R::all(near_sure_), least), R::less(most, R::all(light_sure_)));
+    const uint32_t left = R::bits(within);
+    if (left == 0) return false;
+    if ((left & ~R::bits(between)) != 0 && !clear_cuts(c, sides, within))
+      return part_in_doubt(block, at, excluded, v0, v1, out, widest);
+    Ends ends;
+    const R::Floats v01 = end(c, 0, 1);
+    for (int i = 0; i < 2; ++i) {
+      const R::Floats own0 = end(c, 2 + i, 0), own1 = end(c, 2 + i, 1);
+      ends.v1[i] = R::select(sides.shared, v01, own1);
+      ends.v2[i] = R::select(sides.to0[i], own0, own1);
+      ends.sure[i] = R::both(sides.cut[i], within);
     }
-    const auto cross = [&](int i, int j) { return crossing(g[i], beta[i], t[i], g[j], beta[j], t[j]); };
-    const Crossings e01 = cross(0, 1), e02 = cross(0, 2), e12 = cross(1, 2);
-    // From the odd vertex to the other one of lower, and of higher index.
-    const Crossings e1 = pick(odd2, e02, e01), e2 = pick(odd0, e02, e12);
-    R::Floats v1s = R::div(e1.beta, e1.t), v2s = R::div(e2.beta, e2.t);
-    // Mostly all cuts lie clearly between x and the light.
-    const R::Floats nearer = R::min(before(near_, e1), before(near_, e2));
-    const R::Floats farther = R::max(before(light_near_, e1), before(light_near_, e2));
-    R::Mask clear = R::both(R::less_equal(R::all(0), nearer), R::less(farther, R::all(0)));
-    if (R::bits(R::without(cut, clear)) != 0) {
+    ends.joined = sides.shared;
+    return add(ends, v0, v1, out, widest);
+  }
+
+  /// The same where corners lie behind x or close to it, or beyond the light: what single precision can say
+  /// of that; the rest is left to settle().
+  [[gnu::noinline]] bool part_in_doubt(const PairBlock& block, int at, const Excluded& excluded, float v0,
+                                       float v1, HiddenIntervals& out, float& widest) const {
+    R::Floats q[4][3];
+    Corners c;
+    const Sides sides = sides_of(block, at, excluded, q, c);
+    set_corners(q, c);
+    Ends ends;
+    R::Mask clear[2];
+    const Crossings e01 = crossing(c, 0, 1);
+    for (int i = 0; i < 2; ++i) {
+      const Crossings own0 = crossing(c, 2 + i, 0), own1 = crossing(c, 2 + i, 1);
+      const Crossings e1 = pick(sides.shared, e01, own1), e2 = pick(sides.to0[i], own0, own1);
       const Place at1 = place(e1), at2 = place(e2);
-      cut = R::without(R::without(cut, R::both(at1.behind, at2.behind)), R::both(at1.beyond, at2.beyond));
-      clear = R::either(clear, decide_behind(e1, at1, e2, at2, v1s, v2s));
-      out.doubt({&block,
-                 static_cast<uint16_t>(candidates(R::without(cut, clear), at1, at2, v1s, v2s, v0, v1)),
-                 static_cast<uint16_t>(R::bits(R::without(d1, d2))), static_cast<uint16_t>(R::bits(odd2)),
-                 static_cast<uint16_t>(at)});
+      ends.v1[i] = R::div(e1.beta, e1.t), ends.v2[i] = R::div(e2.beta, e2.t);
+      clear[i] = R::both(at1.clear, at2.clear);
+      const R::Mask cut = R::without(R::without(sides.cut[i], R::both(at1.behind, at2.behind)),
+                                     R::both(at1.beyond, at2.beyond));
+      const R::Mask sure = R::either(clear[i], decide_behind(e1, at1, e2, at2, ends.v1[i], ends.v2[i]));
+      ends.sure[i] = R::both(cut, sure);
+      const uint32_t left = candidates(R::without(cut, sure), at1, at2, ends.v1[i], ends.v2[i], v0, v1);
+      out.doubt({&block, static_cast<uint16_t>(left), static_cast<uint16_t>(R::bits(sides.shared)),
+                 static_cast<uint16_t>(R::bits(sides.to0[i])), static_cast<uint8_t>(at),
+                 static_cast<uint8_t>(i)});
     }
-    const R::Floats lo = R::max(R::min(v1s, v2s), R::all(v0)), hi = R::min(R::max(v1s, v2s), R::all(v1));
-    cut = R::both(R::both(cut, clear), R::less(lo, hi));
-    out.add(R::bits(cut), lo, hi);
+    ends.joined = R::both(sides.shared, R::both(clear[0], clear[1]));
+    return add(ends, v0, v1, out, widest);
+  }
+
+  /// Do all cuts lie clearly between x and the light?
+  [[gnu::always_inline]] bool clear_cuts(const Corners& c, const Sides& sides, R::Mask within) const {
+    const R::Mask clear01 = clear(c, 0, 1);
+    uint32_t unclear = 0;
+    for (int i = 0; i < 2; ++i) {
+      const R::Mask own0 = clear(c, 2 + i, 0), own1 = clear(c, 2 + i, 1);
+      const R::Mask both = R::both(one(sides.shared, clear01, own1), one(sides.to0[i], own0, own1));
+      unclear |= R::bits(R::without(R::both(sides.cut[i], within), both));
+    }
+    return unclear == 0;
+  }
+  /// m ? a : b
+  static R::Mask one(R::Mask m, R::Mask a, R::Mask b) { return R::either(R::both(m, a), R::without(b, m)); }
+  R::Mask clear(const Corners& c, int i, int j) const {
+    const R::Floats t = R::add(R::mul(c.g[i], c.t[j]), R::mul(c.g[j], c.t[i])), w = R::add(c.g[i], c.g[j]);
+    return R::both(R::less_equal(R::all(0), R::minus_fma(near_, w, t)),
+                   R::less(R::minus_fma(light_near_, w, t), R::all(0)));
+  }
+
+  /// v where an edge crosses the plane.
+  static R::Floats end(const Corners& c, int i, int j) {
+    const R::Floats beta = R::add(R::mul(c.g[i], c.beta[j]), R::mul(c.g[j], c.beta[i]));
+    return R::div(beta, R::add(R::mul(c.g[i], c.t[j]), R::mul(c.g[j], c.t[i])));
+  }
+
+  /// Adds what is settled: of two triangles that meet one interval.
+  [[gnu::always_inline]] static bool add(const Ends& of, float v0, float v1, HiddenIntervals& out,
+                                         float& widest) {
+    const R::Floats lo0 = R::min(of.v1[0], of.v2[0]), hi0 = R::max(of.v1[0], of.v2[0]);
+    const R::Floats lo1 = R::min(of.v1[1], of.v2[1]), hi1 = R::max(of.v1[1], of.v2[1]);
+    // Where only one of the triangles hides something, it stands for both.
+    R::Floats lo = R::min(R::select(of.sure[0], lo0, lo1), R::select(of.sure[1], lo1, lo0));
+    R::Floats hi = R::max(R::select(of.sure[0], hi0, hi1), R::select(of.sure[1], hi1, hi0));
+    const R::Mask apart = R::without(R::both(of.sure[0], of.sure[1]), of.joined);
+    if (R::bits(apart) != 0) {
+      lo = R::select(apart, lo0, lo), hi = R::select(apart, hi0, hi);
+      const R::Floats from = R::max(lo1, R::all(v0)), to = R::min(hi1, R::all(v1));
+      out.add(R::bits(R::both(apart, R::less(from, to))), from, to);
+    }
+    lo = R::max(lo, R::all(v0)), hi = R::min(hi, R::all(v1));
+    const R::Mask some = R::both(R::either(of.sure[0], of.sure[1]), R::less(lo, hi));
+    out.add(R::bits(some), lo, hi);
     const R::Floats length = R::sub(hi, lo);
-    if (R::bits(R::both(cut, R::less(R::all(widest), length))) == 0) return false;
-    widest = R::highest(R::select(cut, length, R::all(0)));
+    if (R::bits(R::both(some, R::less(R::all(widest), length))) == 0) return false;
+    widest = R::highest(R::select(some, length, R::all(0)));
     return true;
   }
 
@@ -197,12 +322,11 @@ class FanBlock {
   }
 
   /// Without a fused multiply-add: the same whichever vertex comes first.
-  static Crossings crossing(R::Floats g, R::Floats beta, R::Floats t, R::Floats g2, R::Floats beta2,
-                            R::Floats t2) {
-    return {R::add(R::mul(g, beta2), R::mul(g2, beta)), R::add(R::mul(g, t2), R::mul(g2, t)), R::add(g, g2)};
+  static Crossings crossing(const Corners& c, int i, int j) {
+    return {R::add(R::mul(c.g[i], c.beta[j]), R::mul(c.g[j], c.beta[i])),
+            R::add(R::mul(c.g[i], c.t[j]), R::mul(c.g[j], c.t[i])), R::add(c.g[i], c.g[j])};
   }
 
-  /// m ? a : b
   static Crossings pick(R::Mask m, const Crossings& a, const Crossings& b) {
     return {R::select(m, a.beta, b.beta), R::select(m, a.t, b.t), R::select(m, a.w, b.w)};
   }
@@ -247,6 +371,7 @@ class FanBlock {
 
   const LineFan* fan_;
   R::Floats minus_x_[3], g_[3], beta_[3], t_[3], near_, light_near_, light_far_;
+  float near_sure_, light_sure_, light_past_;
 };
 
 }  // namespace

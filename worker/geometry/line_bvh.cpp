@@ -5,6 +5,7 @@
 
 #include "proto/status.h"
 #include "worker/geometry/bvh_builder.h"
+#include "worker/geometry/triangle_pairs.h"
 
 namespace penumbra {
 namespace {
@@ -22,50 +23,52 @@ constexpr Box empty_box() {
   return {Vec3f(kInfinity, kInfinity, kInfinity), -Vec3f(kInfinity, kInfinity, kInfinity)};
 }
 
-/// The triangles of some meshes, by a number of their own.
-struct TriangleList {
+/// The triangles of some meshes in pairs, by numbers of their own.
+struct PairList {
   struct Item {
     const TriangleMesh* mesh;
-    uint32_t primitive, id;
+    TrianglePair pair;
+    uint32_t first_id;  ///< of the mesh's first triangle
   };
   std::vector<Item> items;
   std::vector<Box> boxes;
 
-  void reserve(size_t triangles) {
-    items.reserve(triangles);
-    boxes.reserve(triangles);
+  void reserve(size_t count) {
+    items.reserve(count);
+    boxes.reserve(count);
   }
 
   void add(const TriangleMesh& mesh, uint32_t first_id) {
-    for (uint32_t i = 0; i < mesh.triangles(); ++i) {
+    pairs_.clear();
+    append_pairs(mesh, pairs_);
+    for (const TrianglePair& pair : pairs_) {
       Box box = empty_box();
-      for (int c = 0; c < 3; ++c) extend(box, mesh.positions[mesh.indices[3 * size_t{i} + c]]);
-      items.push_back({&mesh, i, first_id + i});
+      for (const uint32_t triangle : {pair.first, pair.second})
+        for (int c = 0; c < 3; ++c) extend(box, mesh.positions[mesh.indices[3 * size_t{triangle} + c]]);
+      items.push_back({&mesh, pair, first_id});
       boxes.push_back(box);
     }
   }
+
+ private:
+  std::vector<TrianglePair> pairs_;
 };
 
-TriangleBlock block_of(const BuiltLeaf& leaf, const TriangleList& list) {
-  TriangleBlock block;
-  for (uint32_t lane = 0; lane < kWidth; ++lane) {
-    const bool used = lane < leaf.count;
-    const auto& item = list.items[leaf.items[used ? lane : 0]];
-    block.id[lane] = item.id;
-    for (int c = 0; c < 3; ++c) {
-      const Vec3f& p = item.mesh->positions[item.mesh->indices[3 * size_t{item.primitive} + (used ? c : 0)]];
-      for (int k = 0; k < 3; ++k) block.p[c][k][lane] = p[k];
-    }
-  }
-  return block;
+void set_lane(PairBlock& block, uint32_t lane, const PairList::Item& item) {
+  const PairCorners corners = corners_of(*item.mesh, item.pair);
+  for (int c = 0; c < 4; ++c)
+    for (int k = 0; k < 3; ++k) block.p[c][k][lane] = item.mesh->positions[corners.index[c]][k];
+  block.id[0][lane] = item.first_id + item.pair.first;
+  block.id[1][lane] = item.pair.alone() ? kNone : item.first_id + item.pair.second;
+  for (int which = 0; which < 2; ++which) block.order[which][lane] = corners.order[which];
 }
 
-/// Copies a built tree into arrays, depth first; leaves become blocks of triangles, or instances or segments:
+/// Copies a built tree into arrays, depth first; leaves become blocks of pairs, or instances or segments:
 /// of several in one leaf each has its box in a node of their own.
 class Flattener {
  public:
-  Flattener(LineTree& tree, std::span<const Box> boxes, const TriangleList* triangles)
-      : tree_(tree), boxes_(boxes), triangles_(triangles) {}
+  Flattener(LineTree& tree, std::span<const Box> boxes, const PairList* pairs)
+      : tree_(tree), boxes_(boxes), pairs_(pairs) {}
 
   void root(const BuiltNode& node, const Box& bounds) {
     for (int k = 0; k < 3; ++k) tree_.centre[k] = 0.5 * (double{bounds.lo[k]} + bounds.hi[k]);
@@ -78,7 +81,7 @@ class Flattener {
       bundle(static_cast<const BuiltLeaf&>(node), 1);
       return;
     }
-    if (triangles_ != nullptr) tree_.blocks.reserve(leaves);
+    if (pairs_ != nullptr) tree_.blocks.reserve(leaves);
     if (!node.leaf) {
       inner(static_cast<const BuiltInner&>(node), 1);
       return;
@@ -114,7 +117,7 @@ class Flattener {
   }
 
   bool is_bundle(const BuiltNode& node) const {
-    return node.leaf && triangles_ == nullptr && static_cast<const BuiltLeaf&>(node).count > 1;
+    return node.leaf && pairs_ == nullptr && static_cast<const BuiltLeaf&>(node).count > 1;
   }
 
   uint32_t bundle(const BuiltLeaf& many, uint32_t depth) {
@@ -139,9 +142,15 @@ class Flattener {
   }
 
   uint32_t leaf(const BuiltLeaf& built) {
-    if (triangles_ == nullptr) return built.items[0];
-    tree_.blocks.push_back(block_of(built, *triangles_));
-    tree_.triangles += built.count;
+    if (pairs_ == nullptr) return built.items[0];
+    PairBlock& block = tree_.blocks.emplace_back();
+    for (uint32_t lane = 0; lane < built.count; ++lane) {
+      const PairList::Item& item = pairs_->items[built.items[lane]];
+      set_lane(block, lane, item);
+      tree_.triangles += item.pair.alone() ? 1 : 2;
+    }
+    for (uint32_t lane = built.count; lane < kWidth; ++lane) block.clear(lane);
+    block.note_range();
     return static_cast<uint32_t>(tree_.blocks.size() - 1);
   }
 
@@ -155,7 +164,7 @@ class Flattener {
 
   LineTree& tree_;
   std::span<const Box> boxes_;
-  const TriangleList* triangles_;
+  const PairList* pairs_;
 };
 
 Box bounds_of(std::span<const Box> boxes) {
@@ -167,11 +176,11 @@ Box bounds_of(std::span<const Box> boxes) {
   return all;
 }
 
-absl::Status build_tree(std::span<const Box> boxes, const TriangleList* triangles, TreeBuilder& builder,
+absl::Status build_tree(std::span<const Box> boxes, const PairList* pairs, TreeBuilder& builder,
                         LineTree& tree, int leaf_size) {
   if (boxes.empty()) return absl::OkStatus();
   return builder.build(boxes, leaf_size, [&](const BuiltNode& root) {
-    Flattener(tree, boxes, triangles).root(root, bounds_of(boxes));
+    Flattener(tree, boxes, pairs).root(root, bounds_of(boxes));
   });
 }
 
@@ -278,7 +287,7 @@ absl::Status build_tubes(std::span<const MeshInput> meshes, TreeBuilder& builder
 }
 
 size_t bytes_of(const LineTree& tree) {
-  return tree.nodes.size() * sizeof(LineNode) + tree.blocks.size() * sizeof(TriangleBlock);
+  return tree.nodes.size() * sizeof(LineNode) + tree.blocks.size() * sizeof(PairBlock);
 }
 
 }  // namespace
@@ -315,12 +324,12 @@ absl::StatusOr<LineBvh> build_line_bvh(std::span<const MeshInput> meshes,
     first += m.mesh->triangles();
   }
   const auto build_over = [&](LineTree& tree, auto belongs) {
-    TriangleList list;
+    PairList list;
     size_t triangles = 0;
     for (size_t m = 0; m < meshes.size(); ++m) {
       if (belongs(m) && seen_by_lines(meshes[m])) triangles += meshes[m].mesh->triangles();
     }
-    list.reserve(triangles);
+    list.reserve(triangles / 2);
     for (size_t m = 0; m < meshes.size(); ++m) {
       if (belongs(m) && seen_by_lines(meshes[m])) list.add(*meshes[m].mesh, bvh.first_triangle[m]);
     }

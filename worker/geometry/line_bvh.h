@@ -1,6 +1,7 @@
 #pragma once
-// The hierarchy that line queries walk: 16-wide nodes over blocks of 16 triangles, one layout for every
-// instruction set, so that all of them visit the same boxes in the same order.
+// The hierarchy that line queries walk: 16-wide nodes over blocks of 16 pairs of triangles, one layout for
+// every instruction set, so that all of them visit the same boxes in the same order.
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -9,11 +10,10 @@
 #include "worker/geometry/aligned.h"
 #include "worker/geometry/geometry.h"
 #include "worker/geometry/line_fan.h"
+#include "worker/geometry/pair_block.h"
 #include "worker/geometry/pose.h"
 
 namespace penumbra {
-
-constexpr int kWidth = 16;
 
 struct Box {
   Vec3f lo, hi;
@@ -26,16 +26,10 @@ struct alignas(64) LineNode {
   uint32_t leaves = 0;                 ///< bit k: child k is a leaf
 };
 
-/// 16 triangles as the scene has them; unused lanes are points, which no plane cuts.
-struct alignas(64) TriangleBlock {
-  float p[3][3][kWidth];  ///< [vertex][axis]
-  uint32_t id[kWidth];    ///< index of the triangle in LineBvh::first_triangle's numbering
-};
-
 /// A tree in its own coordinates: of the world's meshes, of one object's, or of the instances.
 struct LineTree {
   AlignedVector<LineNode> nodes;  ///< [0] is the root; empty: nothing here
-  AlignedVector<TriangleBlock> blocks;
+  AlignedVector<PairBlock> blocks;
   Vec3d centre;        ///< of its bounds; nodes are relative to it
   double radius = 0;   ///< |p - centre| of everything inside
   uint32_t depth = 0;  ///< of nodes on a path
@@ -76,12 +70,6 @@ struct LineBvh {
   uint32_t depth() const;
   size_t bytes() const;
   size_t triangles() const;
-};
-
-/// A range of triangle numbers that never hide (the light's own surface).
-struct Excluded {
-  uint32_t first = 0, count = 0;
-  bool holds(uint32_t id) const { return id - first < count; }
 };
 
 /// What of the query's light lies in a tree: the world's (instance kNone) or a placed object's.

@@ -97,15 +97,12 @@ class Walk {
     const LineFan fan = make_fan(x, a, b, tree.reach(x), plane);
     if (fan.degenerate) return;
     leaves(tree, fan, [&](uint32_t block_index) {
-      const TriangleBlock& block = tree.blocks[block_index];
-      for (int lane = 0; lane < kWidth; ++lane) {
-        if (excluded.holds(block.id[lane])) continue;
-        Vec3f p[3];
-        for (int c = 0; c < 3; ++c) p[c] = {block.p[c][0][lane], block.p[c][1][lane], block.p[c][2][lane]};
-        const Interval hidden = hidden_by_triangle(fan, p);
+      tree.blocks[block_index].for_each_triangle([&](const std::array<Vec3f, 3>& p, uint32_t id) {
+        if (excluded.holds(id)) return;
+        const Interval hidden = hidden_by_triangle(fan, p.data());
         visible_.subtract(hidden.lo, hidden.hi);
-      }
-      counters_.triangles_tested += kWidth;
+      });
+      counters_.triangles_tested += kTrianglesPerBlock;
     });
   }
 

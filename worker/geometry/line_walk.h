@@ -207,13 +207,16 @@ class LineWalk {
             const Excluded& excluded) {
     const Interval hull = visible_.hull();
     HiddenIntervals& hidden = context_->hidden;
+    const bool large = tree.nodes.size() == 1;  // a few triangles that make up a room
     for (int i = 0; i < count; ++i) {
-      if (fan_block.hidden(tree.blocks[blocks[i]], excluded, hull.lo, hull.hi, hidden, widest_)) {
+      const PairBlock& block = tree.blocks[blocks[i]];
+      if (large ? fan_block.hidden_by_large(block, excluded, hull.lo, hull.hi, hidden, widest_)
+                : fan_block.hidden(block, excluded, hull.lo, hull.hi, hidden, widest_)) {
         occluder_ = blocks[i];
         occluder_world_ = &tree == &bvh().world;
       }
     }
-    context_->counters.triangles_tested += static_cast<uint64_t>(kWidth * count);
+    context_->counters.triangles_tested += static_cast<uint64_t>(kTrianglesPerBlock * count);
     fan_block.settle(hidden, hull.lo, hull.hi);
     return !hidden.empty() && hidden.flush(visible_);
   }

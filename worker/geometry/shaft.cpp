@@ -10,12 +10,9 @@ namespace {
 /// Does what hid the light from the last x hide it from this one as well?
 bool hidden_as_before(const LineBvh& bvh, const Excluded& excluded, const Shaft::Parts& shaft) {
   if (shaft.cover_bvh != bvh.id) return false;
-  const TriangleBlock& block = bvh.world.blocks[shaft.cover_block];
-  if (excluded.holds(block.id[shaft.cover_lane])) return false;
-  Vec3f p[3];
-  for (int c = 0; c < 3; ++c)
-    for (int k = 0; k < 3; ++k) p[c][k] = block.p[c][k][shaft.cover_lane];
-  return shaft.planes.covered_by(p);
+  const PairBlock& block = bvh.world.blocks[shaft.cover_block];
+  if (excluded.holds(block.id[shaft.cover_which][shaft.cover_lane])) return false;
+  return shaft.planes.covered_by(block.triangle(shaft.cover_lane, shaft.cover_which).data());
 }
 
 }  // namespace
@@ -31,21 +28,23 @@ size_t Shaft::listed() const {
 
 std::array<Vec3f, 3> Shaft::triangle(size_t i) const {
   PENUMBRA_CHECK(i < listed());
-  const TriangleBlock& block = parts_->list.blocks()[i / kWidth];
-  std::array<Vec3f, 3> corners;
-  for (int c = 0; c < 3; ++c)
-    for (int k = 0; k < 3; ++k) corners[size_t(c)][k] = block.p[c][k][i % kWidth];
-  return corners;
+  return parts_->list.triangle(static_cast<int>(i));
+}
+
+void ShaftList::add(const PairBlock& block, int lane, bool first, bool second) {
+  PENUMBRA_CHECK(triangles_ + first + second <= kMost);
+  PairBlock& to = blocks_[lanes_ / kWidth];
+  const int at = lanes_ % kWidth;
+  to.copy(at, block, lane);
+  if (first != second) to.keep_one(at, second ? 1 : 0);
+  for (int which = 0; which < first + second; ++which)
+    places_[triangles_++] = {static_cast<uint8_t>(lanes_), static_cast<uint8_t>(which)};
+  ++lanes_;
 }
 
 void ShaftList::finish() {
-  if (count_ % kWidth == 0) return;
-  TriangleBlock& last = blocks_[count_ / kWidth];
-  for (int lane = count_ % kWidth; lane < kWidth; ++lane) {
-    for (int c = 0; c < 3; ++c)
-      for (int k = 0; k < 3; ++k) last.p[c][k][lane] = 0;
-    last.id[lane] = kNone;
-  }
+  for (int lane = lanes_; lane % kWidth != 0; ++lane) blocks_[lane / kWidth].clear(lane % kWidth);
+  for (int block = 0; block * kWidth < lanes_; ++block) blocks_[block].note_range();
 }
 
 ShaftContent enter_shaft(const LineBvh& bvh, LinePath path, const ShaftQuery& query, Shaft::Parts& shaft,

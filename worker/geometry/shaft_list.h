@@ -7,32 +7,34 @@
 
 namespace penumbra {
 
-/// Triangles in the order found, packed into blocks.
+/// Triangles in the order found, packed into blocks; two that are a pair stay together.
 class ShaftList {
  public:
   /// More than these and single line queries, which stop at what is hidden already, are the cheaper way
   /// (README: measured).
   static constexpr int kMost = 32;
 
-  void clear() { count_ = 0; }
-  int size() const { return count_; }
-  /// Not beyond kMost.
-  void add(const TriangleBlock& block, int lane) {
-    TriangleBlock& to = blocks_[count_ / kWidth];
-    const int at = count_++ % kWidth;
-    for (int c = 0; c < 3; ++c)
-      for (int k = 0; k < 3; ++k) to.p[c][k][at] = block.p[c][k][lane];
-    to.id[at] = block.id[lane];
-  }
+  void clear() { lanes_ = triangles_ = 0; }
+  int size() const { return triangles_; }
+  /// Of a block's lane the first triangle, the second, or both. Not beyond kMost triangles.
+  void add(const PairBlock& block, int lane, bool first, bool second);
   /// Unused lanes of the last block become points, which no plane cuts.
   void finish();
-  std::span<const TriangleBlock> blocks() const {
-    return {blocks_, static_cast<size_t>((count_ + kWidth - 1) / kWidth)};
+  std::span<const PairBlock> blocks() const {
+    return {blocks_, static_cast<size_t>((lanes_ + kWidth - 1) / kWidth)};
+  }
+  /// i < size()
+  std::array<Vec3f, 3> triangle(int i) const {
+    return blocks_[places_[i].lane / kWidth].triangle(places_[i].lane % kWidth, places_[i].which);
   }
 
  private:
-  int count_ = 0;
-  TriangleBlock blocks_[kMost / kWidth];
+  struct Place {
+    uint8_t lane, which;
+  };
+  int lanes_ = 0, triangles_ = 0;
+  PairBlock blocks_[kMost / kWidth];
+  Place places_[kMost];
 };
 
 struct Shaft::Parts {
@@ -41,7 +43,7 @@ struct Shaft::Parts {
   /// A triangle that hid all of the light from the last x that one did: the first to try for the next.
   uint64_t cover_bvh = 0;
   uint32_t cover_block = 0;
-  int cover_lane = 0;
+  int cover_lane = 0, cover_which = 0;
 };
 
 /// Fills the list by the given path.

@@ -58,14 +58,15 @@ class ShaftBoxes {
   float lo_[3], hi_[3];
 };
 
-/// Sixteen triangles against the pyramid.
+/// The first triangles of sixteen pairs against the pyramid, or the second ones.
 class ShaftBlock {
   using S = Simd;
 
  public:
-  ShaftBlock(const ShaftPlanes& planes, const TriangleBlock& block) : planes_(planes) {
+  ShaftBlock(const ShaftPlanes& planes, const PairBlock& block, int which) : planes_(planes) {
+    const int corners[3] = {0, 1, 2 + which};
     for (int c = 0; c < 3; ++c)
-      for (int k = 0; k < 3; ++k) q_[c][k] = S::sub(S::load(block.p[c][k]), S::all(planes.x[k]));
+      for (int k = 0; k < 3; ++k) q_[c][k] = S::sub(S::load(block.p[corners[c]][k]), S::all(planes.x[k]));
   }
 
   /// Lanes that no face of the pyramid has wholly outside.
@@ -176,41 +177,49 @@ class ShaftWalk {
 
   /// Lists what of a block can hide some of the light. False: that is settled, or too much.
   bool block_enters(uint32_t index) {
-    const TriangleBlock& block = bvh_.world.blocks[index];
-    counters_.triangles_tested += kWidth;
-    const ShaftBlock test(shaft_.planes, block);
-    uint32_t lanes = test.entering();
-    if (excluded_.count != 0)
-      lanes &= ~Simd::bits(Simd::in_range(block.id, excluded_.first, excluded_.count));
-    if (lanes == 0) return true;
-    for (uint32_t aside = lanes & test.light_aside(); aside != 0; aside &= aside - 1) {
-      const int lane = std::countr_zero(aside);
-      if (shaft_.planes.plane_clears(Corners(block, lane).p)) lanes &= ~(1u << lane);
+    counters_.triangles_tested += kTrianglesPerBlock;
+    uint32_t lanes[2];
+    for (int which = 0; which < 2; ++which) {
+      const ShaftBlock test(shaft_.planes, bvh_.world.blocks[index], which);
+      lanes[which] = in_the_way(index, which, test);
+      if (lanes[which] == 0) continue;
+      const uint32_t middle = test.before_middle() & lanes[which];
+      if (middle != 0 && covered(index, which, middle)) return false;
     }
-    if (lanes == 0) return true;
-    const uint32_t middle = test.before_middle() & lanes;
-    if (middle != 0 && covered(index, middle)) return false;
-    if (shaft_.list.size() + std::popcount(lanes) > ShaftList::kMost) return false;
-    for (; lanes != 0; lanes &= lanes - 1) shaft_.list.add(block, std::countr_zero(lanes));
+    if (shaft_.list.size() + std::popcount(lanes[0]) + std::popcount(lanes[1]) > ShaftList::kMost)
+      return false;
+    for (uint32_t left = lanes[0] | lanes[1]; left != 0; left &= left - 1) {
+      const int lane = std::countr_zero(left);
+      shaft_.list.add(bvh_.world.blocks[index], lane, lanes[0] >> lane & 1, lanes[1] >> lane & 1);
+    }
     return true;
   }
 
-  /// One triangle of a block.
-  struct Corners {
-    Corners(const TriangleBlock& block, int lane) {
-      for (int c = 0; c < 3; ++c) p[c] = {block.p[c][0][lane], block.p[c][1][lane], block.p[c][2][lane]};
+  /// Lanes whose triangle may hide some of the light.
+  uint32_t in_the_way(uint32_t index, int which, const ShaftBlock& test) const {
+    const PairBlock& block = bvh_.world.blocks[index];
+    uint32_t lanes = test.entering();
+    if (lanes == 0) return 0;
+    if (excluded_.count != 0)
+      lanes &= ~Simd::bits(Simd::in_range(block.id[which], excluded_.first, excluded_.count));
+    lanes &= ~Simd::bits(Simd::in_range(block.id[which], kNone, 1));
+    if (lanes == 0) return 0;
+    for (uint32_t aside = lanes & test.light_aside(); aside != 0; aside &= aside - 1) {
+      const int lane = std::countr_zero(aside);
+      if (shaft_.planes.plane_clears(block.triangle(lane, which).data())) lanes &= ~(1u << lane);
     }
-    Vec3f p[3];
-  };
+    return lanes;
+  }
 
-  bool covered(uint32_t index, uint32_t lanes) {
-    const TriangleBlock& block = bvh_.world.blocks[index];
+  bool covered(uint32_t index, int which, uint32_t lanes) {
+    const PairBlock& block = bvh_.world.blocks[index];
     for (; lanes != 0; lanes &= lanes - 1) {
       const int lane = std::countr_zero(lanes);
-      if (!shaft_.planes.covered_by(Corners(block, lane).p)) continue;
+      if (!shaft_.planes.covered_by(block.triangle(lane, which).data())) continue;
       shaft_.cover_bvh = bvh_.id;
       shaft_.cover_block = index;
       shaft_.cover_lane = lane;
+      shaft_.cover_which = which;
       return covered_ = true;
     }
     return false;
@@ -240,12 +249,12 @@ class ListLines {
     visible_.reset(buffers_);
     FanBlock fan_block;
     fan_block.set_up(fan);
-    for (const TriangleBlock& block : list_.blocks()) {
+    for (const PairBlock& block : list_.blocks()) {
       const Interval hull = visible_.hull();
       float widest = 0;
       // The list leaves out the light's own triangles.
       fan_block.hidden(block, {}, hull.lo, hull.hi, hidden_, widest);
-      counters_.triangles_tested += kWidth;
+      counters_.triangles_tested += kTrianglesPerBlock;
       fan_block.settle(hidden_, hull.lo, hull.hi);
       if (!hidden_.empty()) hidden_.flush(visible_);
       if (visible_.empty()) return;

@@ -106,14 +106,11 @@ class TimeWalk {
     walk(tree, swept, [&](uint32_t block) { test(tree.blocks[block], swept, instance); });
   }
 
-  void test(const TriangleBlock& block, const SweptRay& swept, uint32_t instance) {
-    counters_.triangles_tested += kWidth;
-    for (int lane = 0; lane < kWidth; ++lane) {
-      Vec3f p[3];
-      for (int c = 0; c < 3; ++c) p[c] = {block.p[c][0][lane], block.p[c][1][lane], block.p[c][2][lane]};
-      if (p[0] == p[1] && p[0] == p[2]) continue;  // an unused lane
+  void test(const PairBlock& block, const SweptRay& swept, uint32_t instance) {
+    counters_.triangles_tested += kTrianglesPerBlock;
+    block.for_each_triangle([&](const std::array<Vec3f, 3>& p, uint32_t id) {
       TimeCover covers[kMostCovers];
-      for (int n = covers_of_triangle(swept, p, covers); n > 0; --n) {
+      for (int n = covers_of_triangle(swept, p.data(), covers); n > 0; --n) {
         // The envelope's 1/k is the distance; between two times it is taken for linear, which it is for what
         // does not turn.
         const TimeCover& cover = covers[n - 1];
@@ -122,10 +119,9 @@ class TimeWalk {
         if (!(piece.lo < piece.hi)) continue;
         piece.slope = (cover.at_hi - cover.at_lo) / (piece.hi - piece.lo);
         piece.start = cover.at_lo - piece.slope * piece.lo;
-        if (std::isfinite(piece.slope) && std::isfinite(piece.start))
-          envelope_.insert(piece, {instance, block.id[lane]});
+        if (std::isfinite(piece.slope) && std::isfinite(piece.start)) envelope_.insert(piece, {instance, id});
       }
-    }
+    });
   }
 
   /// Leaves that the ray may meet before what is known, from near to far within each node.

@@ -28,7 +28,9 @@ IntervalSet by_every_triangle(const LineBvh& bvh, const TriangleMesh& mesh, cons
       make_fan(x, Vec3d(query.a) - x, Vec3d(query.b) - x, bvh.world.reach(x), chord_plane(query));
   if (fan.degenerate) return visible;
   visible.reset();
+  const Excluded light = excluded_in(bvh, query, kNone);
   for (size_t i = 0; i < mesh.triangles(); ++i) {
+    if (light.holds(static_cast<uint32_t>(i))) continue;
     const Vec3f p[3] = {mesh.positions[mesh.indices[3 * i]], mesh.positions[mesh.indices[3 * i + 1]],
                         mesh.positions[mesh.indices[3 * i + 2]]};
     const Interval hidden = hidden_by_triangle(fan, p);
@@ -48,6 +50,9 @@ std::vector<PathCase> path_cases() {
   cases.push_back({"few large", soup(40, 0.5f, 1), 20000});
   cases.push_back({"many small", soup(4000, 0.05f, 2), 4000});
   cases.push_back({"slats", soup(400, 1.f, 3), 4000});
+  cases.push_back({"few large pairs", loose_pairs(30, 0.7f, 4), 20000});
+  cases.push_back({"many pairs", loose_pairs(2000, 0.1f, 5), 4000});
+  cases.push_back({"long pairs", loose_pairs(200, 2.f, 6), 4000});
   cases.push_back({"ball", ball({0, 0, 0}, 0.7f, 24, 0.1f), 8000});
   return cases;
 }
@@ -67,6 +72,22 @@ TEST(LinePaths, AgreeWithEveryTriangleToTheBit) {
                                  << text(expected);
       }
     }
+  }
+}
+
+/// The light may be one triangle of a pair, or end in the middle of one.
+TEST(LinePaths, ALightInAPairHidesNothingOfItself) {
+  const TriangleMesh mesh = loose_pairs(40, 0.8f, 7);
+  const LineBvh bvh = bvh_of({&mesh});
+  Random random(23);
+  for (int i = 0; i < 10000; ++i) {
+    LineQuery query = random_query(random);
+    query.light = {kNone, 0, static_cast<uint32_t>(random.uniform(0, 76.999f))};
+    query.light_primitives = 1 + static_cast<uint32_t>(random.uniform(0, 2.999f));
+    const IntervalSet expected = by_every_triangle(bvh, mesh, query);
+    ASSERT_EQ(visible_by(bvh, LinePath::kScalar, query), expected) << "query " << i;
+    for (const LinePath path : vector_paths())
+      ASSERT_EQ(visible_by(bvh, path, query), expected) << "query " << i;
   }
 }
 

@@ -40,6 +40,24 @@ inline TriangleMesh soup(int triangles, float size, uint32_t seed) {
   return mesh;
 }
 
+/// Loose pairs of triangles with an edge in common, bent at any angle, each listed from any vertex on.
+inline TriangleMesh loose_pairs(int pairs, float size, uint32_t seed) {
+  Random random(seed);
+  TriangleMesh mesh;
+  for (int i = 0; i < pairs; ++i) {
+    const Vec3f at = random.in_cube();
+    const auto first = static_cast<uint32_t>(mesh.positions.size());
+    for (int c = 0; c < 4; ++c) mesh.positions.push_back(at + random.in_cube() * size);
+    for (uint32_t own = 2; own < 4; ++own) {
+      const uint32_t corners[3] = {first, first + 1, first + own};
+      const auto from = static_cast<size_t>(random.uniform(0, 2.999f));
+      const size_t step = random.uniform() < 0.5f ? 1 : 2;
+      for (size_t c = 0; c < 3; ++c) mesh.indices.push_back(corners[(from + step * c) % 3]);
+    }
+  }
+  return mesh;
+}
+
 /// A closed, bumpy ball around `centre`: an octahedron split `levels` times.
 inline TriangleMesh ball(const Vec3f& centre, float radius, int rings, float bumps = 0) {
   TriangleMesh mesh;
