@@ -123,7 +123,7 @@ class FanBlock {
   bool hidden(const PairBlock& block, const Excluded& excluded, float v0, float v1, HiddenIntervals& out,
               float& widest) const {
     bool wider = false;
-    for (int at = 0; at < kWidth; at += R::kLanes)
+    for (int at = 0; at < block.lanes; at += R::kLanes)
       wider |= part_hidden(block, at, excluded, v0, v1, out, widest);
     return wider;
   }
@@ -131,7 +131,7 @@ class FanBlock {
   bool hidden_by_large(const PairBlock& block, const Excluded& excluded, float v0, float v1,
                        HiddenIntervals& out, float& widest) const {
     bool wider = false;
-    for (int at = 0; at < kWidth; at += R::kLanes)
+    for (int at = 0; at < block.lanes; at += R::kLanes)
       wider |= part_in_doubt(block, at, excluded, v0, v1, out, widest);
     return wider;
   }
@@ -246,6 +246,7 @@ class FanBlock {
     R::Floats q[4][3];
     Corners c;
     const Sides sides = sides_of(block, at, excluded, q, c);
+    if (R::bits(R::either(sides.cut[0], sides.cut[1])) == 0) return false;
     set_corners(q, c);
     Ends ends;
     R::Mask clear[2];

@@ -149,8 +149,7 @@ class Flattener {
       set_lane(block, lane, item);
       tree_.triangles += item.pair.alone() ? 1 : 2;
     }
-    for (uint32_t lane = built.count; lane < kWidth; ++lane) block.clear(lane);
-    block.note_range();
+    block.finish(static_cast<int>(built.count));
     return static_cast<uint32_t>(tree_.blocks.size() - 1);
   }
 

@@ -26,18 +26,18 @@ void PairBlock::keep_one(int lane, int which) {
   order[1][lane] = order[0][lane];
 }
 
-void PairBlock::note_range() {
+void PairBlock::finish(int used) {
+  lanes = used;
+  for (int lane = used; lane < kWidth; ++lane) {
+    for (int c = 0; c < 4; ++c)
+      for (int k = 0; k < 3; ++k) p[c][k][lane] = p[0][k][0];
+    id[0][lane] = id[1][lane] = kNone;
+    order[0][lane] = order[1][lane] = 0;
+  }
   first_id = kNone, last_id = 0;
   for_each_triangle([&](const std::array<Vec3f, 3>&, uint32_t number) {
     first_id = std::min(first_id, number), last_id = std::max(last_id, number);
   });
-}
-
-void PairBlock::clear(int lane) {
-  for (int c = 0; c < 4; ++c)
-    for (int k = 0; k < 3; ++k) p[c][k][lane] = p[0][k][0];
-  id[0][lane] = id[1][lane] = kNone;
-  order[0][lane] = order[1][lane] = 0;
 }
 
 }  // namespace penumbra

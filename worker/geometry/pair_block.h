@@ -26,6 +26,7 @@ struct alignas(64) PairBlock {
                [kWidth];  ///< which corners a triangle's vertices are: two bits each, the first one's lowest
 
   uint32_t first_id, last_id;  ///< least and greatest number here
+  int32_t lanes;               ///< used ones; they come first
 
   bool may_hold(const Excluded& e) const { return first_id < e.first + e.count && e.first <= last_id; }
   bool has(int lane, int which) const { return id[which][lane] != kNone; }
@@ -51,10 +52,8 @@ struct alignas(64) PairBlock {
   void copy(int lane, const PairBlock& from, int from_lane);
   /// Drops the other triangle of a lane; the one kept is its first one then.
   void keep_one(int lane, int which);
-  /// Leaves a lane, not the first one, unused.
-  void clear(int lane);
-  /// After the last lane is set.
-  void note_range();
+  /// After the first `used` lanes, at least one, are set: leaves the others unused.
+  void finish(int used);
 };
 
 }  // namespace penumbra

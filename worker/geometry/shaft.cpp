@@ -1,5 +1,7 @@
 #include "worker/geometry/shaft.h"
 
+#include <algorithm>
+
 #include "proto/status.h"
 #include "worker/geometry/line_fan.h"
 #include "worker/geometry/shaft_list.h"
@@ -43,8 +45,8 @@ void ShaftList::add(const PairBlock& block, int lane, bool first, bool second) {
 }
 
 void ShaftList::finish() {
-  for (int lane = lanes_; lane % kWidth != 0; ++lane) blocks_[lane / kWidth].clear(lane % kWidth);
-  for (int block = 0; block * kWidth < lanes_; ++block) blocks_[block].note_range();
+  for (int first = 0; first < lanes_; first += kWidth)
+    blocks_[first / kWidth].finish(std::min(lanes_ - first, kWidth));
 }
 
 ShaftContent enter_shaft(const LineBvh& bvh, LinePath path, const ShaftQuery& query, Shaft::Parts& shaft,

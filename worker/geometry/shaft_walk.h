@@ -1,7 +1,9 @@
 #pragma once
 // The walk of a shaft through the hierarchy, sixteen boxes or triangles at a time. Included by one file per
 // instruction set.
+#include <array>
 #include <bit>
+#include <limits>
 
 #include "worker/geometry/fan_block.h"
 #include "worker/geometry/line_workspace.h"
@@ -58,28 +60,34 @@ class ShaftBoxes {
   float lo_[3], hi_[3];
 };
 
-/// The first triangles of sixteen pairs against the pyramid, or the second ones.
+/// Sixteen pairs of triangles against the pyramid.
 class ShaftBlock {
   using S = Simd;
 
  public:
-  ShaftBlock(const ShaftPlanes& planes, const PairBlock& block, int which) : planes_(planes) {
-    const int corners[3] = {0, 1, 2 + which};
-    for (int c = 0; c < 3; ++c)
-      for (int k = 0; k < 3; ++k) q_[c][k] = S::sub(S::load(block.p[corners[c]][k]), S::all(planes.x[k]));
+  ShaftBlock(const ShaftPlanes& planes, const PairBlock& block) : planes_(planes) {
+    for (int c = 0; c < 4; ++c)
+      for (int k = 0; k < 3; ++k) q_[c][k] = S::sub(S::load(block.p[c][k]), S::all(planes.x[k]));
   }
 
-  /// Lanes that no face of the pyramid has wholly outside.
-  uint32_t entering() const {
-    S::Floats least = greatest(planes_.faces[0]);
-    for (int f = 1; f < planes_.face_count; ++f) least = S::min(least, greatest(planes_.faces[f]));
-    return S::bits(S::less_equal(S::all(0), least));
+  /// Lanes whose first triangle, and whose second one, no face of the pyramid has wholly outside.
+  std::array<uint32_t, 2> entering() const {
+    S::Floats least[2] = {S::all(std::numeric_limits<float>::infinity()),
+                          S::all(std::numeric_limits<float>::infinity())};
+    for (int f = 0; f < planes_.face_count; ++f) {
+      const ShaftFace& face = planes_.faces[f];
+      const S::Floats shared = S::max(at(face, 0), at(face, 1));
+      for (int i = 0; i < 2; ++i) least[i] = S::min(least[i], S::max(shared, at(face, 2 + i)));
+    }
+    return {S::bits(S::less_equal(S::all(0), least[0])), S::bits(S::less_equal(S::all(0), least[1]))};
   }
 
-  /// Lanes whose plane seems to have all of the light on one side: worth a look in double precision.
-  uint32_t light_aside() const {
+  /// Lanes in which a triangle's plane seems to have all of the light on one side: worth a look in double
+  /// precision.
+  uint32_t light_aside(int which) const {
     S::Floats e1[3], e2[3], n[3];
-    for (int k = 0; k < 3; ++k) e1[k] = S::sub(q_[1][k], q_[0][k]), e2[k] = S::sub(q_[2][k], q_[0][k]);
+    const S::Floats* own = q_[2 + which];
+    for (int k = 0; k < 3; ++k) e1[k] = S::sub(q_[1][k], q_[0][k]), e2[k] = S::sub(own[k], q_[0][k]);
     for (int k = 0; k < 3; ++k) n[k] = minor(e1, e2, (k + 1) % 3, (k + 2) % 3);
     const S::Floats plane = S::fma(n[2], q_[0][2], S::fma(n[1], q_[0][1], S::mul(n[0], q_[0][0])));
     S::Floats lowest = plane, highest = plane;
@@ -92,13 +100,14 @@ class ShaftBlock {
     return S::bits(S::either(S::less(plane, lowest), S::less(highest, plane)));
   }
 
-  /// Lanes that seem to lie before the middle of the light.
-  uint32_t before_middle() const {
+  /// Lanes in which a triangle seems to lie before the middle of the light.
+  uint32_t before_middle(int which) const {
     S::Mask positive = S::mask(0xffff), negative = positive;
     const S::Floats d[3] = {S::all(planes_.middle.x), S::all(planes_.middle.y), S::all(planes_.middle.z)};
+    const S::Floats* corners[3] = {q_[0], q_[1], q_[2 + which]};
     for (int c = 0; c < 3; ++c) {
       // (middle × a)·b: the sides' own normals are not needed.
-      const S::Floats *a = q_[c], *b = q_[(c + 1) % 3];
+      const S::Floats *a = corners[c], *b = corners[(c + 1) % 3];
       S::Floats side = S::mul(minor(d, a, 1, 2), b[0]);
       side = S::fma(minor(d, a, 2, 0), b[1], side);
       side = S::fma(minor(d, a, 0, 1), b[2], side);
@@ -112,11 +121,6 @@ class ShaftBlock {
   static S::Floats minor(const S::Floats* a, const S::Floats* b, int i, int j) {
     return S::sub(S::mul(a[i], b[j]), S::mul(a[j], b[i]));
   }
-  S::Floats greatest(const ShaftFace& face) const {
-    S::Floats most = at(face, 0);
-    for (int c = 1; c < 3; ++c) most = S::max(most, at(face, c));
-    return most;
-  }
   S::Floats at(const ShaftFace& face, int c) const {
     S::Floats v = S::fma(S::all(face.normal.x), q_[c][0], S::all(face.offset));
     v = S::fma(S::all(face.normal.y), q_[c][1], v);
@@ -124,7 +128,7 @@ class ShaftBlock {
   }
 
   const ShaftPlanes& planes_;
-  S::Floats q_[3][3];
+  S::Floats q_[4][3];
 };
 
 class ShaftWalk {
@@ -178,12 +182,12 @@ class ShaftWalk {
   /// Lists what of a block can hide some of the light. False: that is settled, or too much.
   bool block_enters(uint32_t index) {
     counters_.triangles_tested += kTrianglesPerBlock;
-    uint32_t lanes[2];
+    const ShaftBlock test(shaft_.planes, bvh_.world.blocks[index]);
+    std::array<uint32_t, 2> lanes = test.entering();
     for (int which = 0; which < 2; ++which) {
-      const ShaftBlock test(shaft_.planes, bvh_.world.blocks[index], which);
-      lanes[which] = in_the_way(index, which, test);
+      lanes[which] = in_the_way(index, which, lanes[which], test);
       if (lanes[which] == 0) continue;
-      const uint32_t middle = test.before_middle() & lanes[which];
+      const uint32_t middle = test.before_middle(which) & lanes[which];
       if (middle != 0 && covered(index, which, middle)) return false;
     }
     if (shaft_.list.size() + std::popcount(lanes[0]) + std::popcount(lanes[1]) > ShaftList::kMost)
@@ -195,16 +199,15 @@ class ShaftWalk {
     return true;
   }
 
-  /// Lanes whose triangle may hide some of the light.
-  uint32_t in_the_way(uint32_t index, int which, const ShaftBlock& test) const {
-    const PairBlock& block = bvh_.world.blocks[index];
-    uint32_t lanes = test.entering();
+  /// Of the lanes whose triangle enters, those that may hide some of the light.
+  uint32_t in_the_way(uint32_t index, int which, uint32_t lanes, const ShaftBlock& test) const {
     if (lanes == 0) return 0;
+    const PairBlock& block = bvh_.world.blocks[index];
     if (excluded_.count != 0)
       lanes &= ~Simd::bits(Simd::in_range(block.id[which], excluded_.first, excluded_.count));
     lanes &= ~Simd::bits(Simd::in_range(block.id[which], kNone, 1));
     if (lanes == 0) return 0;
-    for (uint32_t aside = lanes & test.light_aside(); aside != 0; aside &= aside - 1) {
+    for (uint32_t aside = lanes & test.light_aside(which); aside != 0; aside &= aside - 1) {
       const int lane = std::countr_zero(aside);
       if (shaft_.planes.plane_clears(block.triangle(lane, which).data())) lanes &= ~(1u << lane);
     }
