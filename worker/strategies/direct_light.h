@@ -23,8 +23,8 @@ struct Surroundings {
   const Geometry& geometry;
   const LightSet& lights;
   const Attenuation* attenuation = nullptr;  ///< null: nothing but surfaces is in the way of light
-  Arrivals* arrivals =
-      nullptr;  ///< also told of all light; the path stands at the point. Null: nobody asks when
+  /// Also told of all light; the path stands at the point. Null: nobody asks when.
+  Arrivals* arrivals = nullptr;
 };
 
 /// Estimator of the direct light that a point scatters towards its viewer. Keeps scratch memory between
@@ -81,7 +81,8 @@ class DirectLight {
     }
   };
 
-  void trace_bsdf(const ShadingPoint& point, const PassSampler& sampler, int depth);
+  static bool is_black(const Rgb& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
+
   Rgb draw_lights(const ShadingPoint& point, const PassSampler& sampler, int depth);
   LightView view_of(const ShadingPoint& point, size_t light) const;
   Rgb ask(const Task& task, const PassSampler& sampler, int depth);
@@ -93,6 +94,8 @@ class DirectLight {
   /// `weight`: what its being drawn among many counts for.
   Rgb delta(const ShadingPoint& point, const DeltaEmitter& emitter, float weight);
 
+  // direct_light_gather.cpp
+  void trace_bsdf(const ShadingPoint& point, const PassSampler& sampler, int depth);
   void gather_bsdf(const Task& task);
   void gather_points(const Task& task, const PassSampler& sampler, int depth);
   void gather_lines(const Task& task, const PassSampler& sampler, int depth);
@@ -100,16 +103,18 @@ class DirectLight {
   /// The two numbers of sample i of a slot's in a turn: which line, and where on it.
   Vec2d numbers(const Task& task, size_t slot, int turn, int i, const PassSampler& sampler, int depth) const;
   void push(const Task& task, const LightSample& sample, size_t slot, Sight sight, size_t line, double s);
+  bool integrates(const Strategy& strategy) const;
+  /// False: no sample of the light can count here.
+  bool may_reach(const Task& task);
+  // direct_light_sight.cpp
   /// Sets densities_ (row per candidate, as the estimate needs them and as the weights need them) and
   /// drops candidates that nothing reaches.
   void resolve(const Task& task);
   void densities(const Task& task, Candidate& candidate, double* row);
   /// Takes from every candidate what is lost on its way.
   void attenuate(const Task& task);
-  bool integrates(const Strategy& strategy) const;
-  /// False: no sample of the light can count here.
-  bool may_reach(const Task& task);
   bool clear(const Task& task, const LightSample& sample);
+
   Rgb combine();
   void start_combiner(const Task& task);
   Found found(size_t candidate, size_t slot) const;
