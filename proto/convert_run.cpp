@@ -158,6 +158,7 @@ v1::MixCost to_proto(const MixCost& cost) {
   *out.mutable_calibration() = to_proto(cost.calibration);
   out.set_pixels(cost.pixels);
   out.set_relative_variance_squares(cost.relative_variance_squares);
+  out.set_lobed_pixels(cost.lobed_pixels);
   out.set_work(cost.work);
   out.set_overhead_seconds(cost.overhead_seconds);
   out.set_repilot_passes(cost.repilot_passes);
@@ -177,6 +178,7 @@ absl::StatusOr<MixCost> from_proto(const v1::MixCost& message) {
   RETURN_IF_ERROR(check_amount("costs.relative_variance", message.relative_variance()));
   RETURN_IF_ERROR(check_range<int64_t>("costs.pixels", message.pixels(), 0, int64_t{1} << 32));
   RETURN_IF_ERROR(check_amount("costs.relative_variance_squares", message.relative_variance_squares()));
+  RETURN_IF_ERROR(check_range<int64_t>("costs.lobed_pixels", message.lobed_pixels(), 0, message.pixels()));
   RETURN_IF_ERROR(check_amount("costs.work", message.work()));
   RETURN_IF_ERROR(check_amount("costs.overhead_seconds", message.overhead_seconds()));
   RETURN_IF_ERROR(check_range<int64_t>("costs.repilot_passes", message.repilot_passes(), 0, kMostPasses));
@@ -192,6 +194,7 @@ absl::StatusOr<MixCost> from_proto(const v1::MixCost& message) {
   cost.relative_variance = message.relative_variance();
   cost.pixels = message.pixels();
   cost.relative_variance_squares = message.relative_variance_squares();
+  cost.lobed_pixels = message.lobed_pixels();
   cost.work = message.work();
   cost.overhead_seconds = message.overhead_seconds();
   cost.repilot_passes = message.repilot_passes();

@@ -9,7 +9,7 @@
 
 namespace penumbra {
 
-inline constexpr uint32_t kSyncProtocol = 3;
+inline constexpr uint32_t kSyncProtocol = 4;
 
 /// Names one lease for ever: the epoch grows each time the task is leased again.
 struct LeaseId {

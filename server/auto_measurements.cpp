@@ -42,12 +42,14 @@ absl::StatusOr<Measurements> measurements(const JobSpec& spec, const std::vector
     out.pilot_seconds += tile[mix].cpu_seconds;
     std::vector<int> measured;
     std::vector<double> variance, worth, counts, cost;
+    bool lobed = false;
     for (size_t k = 0; k < candidates; ++k) {
       const MixCost& c = tile[first + k];
       out.pilot_seconds += c.cpu_seconds + c.overhead_seconds;
       if (c.pixels < 1 || c.passes < 2) continue;
       const double pixels = static_cast<double>(c.pixels);
       measured.push_back(static_cast<int>(k));
+      lobed |= c.lobed_pixels > 0;
       variance.push_back(c.relative_variance / pixels);
       cost.push_back((counted ? c.work : c.cpu_seconds) / (pixels * static_cast<double>(c.passes)));
       counts.push_back(pixels);
@@ -57,6 +59,7 @@ absl::StatusOr<Measurements> measurements(const JobSpec& spec, const std::vector
     if (measured.empty() || (!out.candidates.empty() && measured != out.candidates))
       return make_status(absl::StatusCode::kInternal,
                          "a pilot task of `auto` has measured nothing to compare");
+    out.lobed.push_back(lobed);
     out.blocks.push_back(tile[mix].blocks);
     out.candidates = std::move(measured);
     out.variance.push_back(std::move(variance));

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "proto/status.h"
 #include "server/auto_blocks.h"
+#include "server/auto_compare.h"
 #include "server/auto_measurements.h"
 
 namespace penumbra {
@@ -18,128 +20,15 @@ constexpr double kBlockPixels = 4 * 2, kBlockSamples = kBlockPixels * 4;
 constexpr double kMostBlockShare = 0.25;
 // A pilot of counted work may take this share of the run's passes.
 constexpr double kPilotShare = 0.08;
-// What a tile's own measurement is weighed against, in pixels: those of each neighbour and of the whole
-// image, for how much varies here (level) and for how candidates compare (ratio). Levels change from tile to
-// tile.
-constexpr double kNeighbourLevelPixels = 1, kImageLevelPixels = 1;
-constexpr double kNeighbourRatioPixels = 4, kImageRatioPixels = 16;
-// A mix without `bsdf` has no bound on f / p where a lobe is narrow, and a pilot that has not met the lobe
-// cannot know: the image's part of its ratio counts as so much worse until the tile's own pixels outweigh it.
+// A mix without `bsdf` has no bound on f / p where a lobe is narrow. A tile in which a material may have such
+// lobes, or that has one beside it, takes no such mix, whatever its few pixels say: in the kitchen a shiny
+// table went to `sa:4` by its pilot, and a dozen of its pixels were then a tenth of the image's error.
+// Elsewhere the pilot may not have met the lobe: the image's part of the mix's ratio counts as so much worse
+// until the tile's own pixels outweigh it.
 constexpr double kUnboundedRatio = 3;
-constexpr double kMostRatio = 256;
 // No tile gets fewer than this share of the mean passes, whatever the pilot has (not) seen there.
 constexpr double kLeastShare = 0.4;
 constexpr double kMostPasses = 1e12;  // far beyond any run; keeps conversions defined
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-/// Tiles around tile t, which differ from it in column and row by one at most.
-std::vector<size_t> neighbours(size_t t, size_t columns, size_t tiles) {
-  std::vector<size_t> out;
-  const auto x = static_cast<ptrdiff_t>(t % columns), y = static_cast<ptrdiff_t>(t / columns);
-  for (ptrdiff_t j = y - 1; j <= y + 1; ++j)
-    for (ptrdiff_t i = x - 1; i <= x + 1; ++i) {
-      const ptrdiff_t other = j * static_cast<ptrdiff_t>(columns) + i;
-      const bool inside = i >= 0 && i < static_cast<ptrdiff_t>(columns) && j >= 0;
-      if (inside && other < static_cast<ptrdiff_t>(tiles) && other != static_cast<ptrdiff_t>(t))
-        out.push_back(static_cast<size_t>(other));
-    }
-  return out;
-}
-
-/// Weighted mean of a tile's own figure (weight: the pixels it is worth), its neighbours' and the image's.
-/// Figures are in units of what is typical of the image.
-struct Blend {
-  double neighbour_pixels, image_pixels, image_figure;
-};
-double blended(const std::vector<double>& figures, const std::vector<double>& pixels, const Blend& blend,
-               size_t t, size_t columns) {
-  double sum = pixels[t] * figures[t] + blend.image_pixels * blend.image_figure;
-  double weight = pixels[t] + blend.image_pixels;
-  for (const size_t other : neighbours(t, columns, figures.size())) {
-    const double w = std::min(blend.neighbour_pixels, pixels[other]);
-    sum += w * figures[other];
-    weight += w;
-  }
-  return sum / weight;
-}
-
-/// What the image says of each candidate: the arithmetic mean, which holds the rare bright samples that the
-/// few pixels of a tile have missed. A candidate that is wild somewhere needs strong evidence elsewhere.
-std::vector<double> typical(const Table& figures, const std::vector<double>& areas) {
-  std::vector<double> sums(figures[0].size(), 0);
-  const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
-  for (size_t t = 0; t < figures.size(); ++t)
-    for (size_t k = 0; k < sums.size(); ++k) sums[k] += areas[t] * figures[t][k] / area;
-  return sums;
-}
-
-/// How a tile compares with the image: the median over the candidates of figure_tk / typical_k, their mean
-/// where most of them found nothing.
-double level_of(const std::vector<double>& figures, const std::vector<double>& typical) {
-  std::vector<double> relative;
-  for (size_t k = 0; k < figures.size(); ++k)
-    if (typical[k] > 0) relative.push_back(figures[k] / typical[k]);
-  if (relative.empty()) return 0;
-  const double mean =
-      std::accumulate(relative.begin(), relative.end(), 0.0) / static_cast<double>(relative.size());
-  const double middle = median(std::move(relative));
-  return middle > 0 ? middle : mean;
-}
-
-std::vector<double> column(const Table& table, size_t k) {
-  std::vector<double> out;
-  for (const std::vector<double>& row : table) out.push_back(row[k]);
-  return out;
-}
-
-constexpr Blend kLevelBlend{kNeighbourLevelPixels, kImageLevelPixels, 1};
-
-/// Figures by which candidates are compared, drawn towards those around and the image's, where a tile's few
-/// pixels leave room for these: figure_tk = level_t × ratio_tk × typical_k; levels and ratios are blended,
-/// each by itself. `image_ratios`: what the image's part of a candidate's ratio counts as.
-Table comparable(const Table& figures, const Table& pixels, const std::vector<double>& image,
-                 const std::vector<double>& image_ratios, size_t columns) {
-  Table out = figures;
-  std::vector<double> levels, worth;
-  for (size_t t = 0; t < figures.size(); ++t) {
-    levels.push_back(level_of(figures[t], image));
-    worth.push_back(median(pixels[t]));
-  }
-  for (size_t k = 0; k < image.size(); ++k) {
-    // Where next to nothing varies a ratio may be anything: beyond these bounds it says «far better» or «far
-    // worse», and not by how much.
-    std::vector<double> ratios;
-    for (size_t t = 0; t < figures.size(); ++t)
-      ratios.push_back(levels[t] > 0 && image[k] > 0
-                           ? std::clamp(figures[t][k] / (levels[t] * image[k]), 1 / kMostRatio, kMostRatio)
-                           : 1);
-    const std::vector<double> weights = column(pixels, k);
-    const Blend ratio_blend{kNeighbourRatioPixels, kImageRatioPixels, image_ratios[k]};
-    for (size_t t = 0; t < figures.size(); ++t)
-      out[t][k] = blended(levels, worth, kLevelBlend, t, columns) * image[k] *
-                  blended(ratios, weights, ratio_blend, t, columns);
-  }
-  return out;
-}
-
-/// Figures by which passes are given out: each candidate's own, drawn a little towards those around.
-Table smoothed(const Table& figures, const Table& pixels, const std::vector<double>& image, size_t columns) {
-  Table out = figures;
-  for (size_t k = 0; k < image.size(); ++k) {
-    if (!(image[k] > 0)) continue;
-    std::vector<double> relative = column(figures, k);
-    for (double& figure : relative) figure /= image[k];
-    const std::vector<double> weights = column(pixels, k);
-    for (size_t t = 0; t < figures.size(); ++t)
-      out[t][k] = image[k] * blended(relative, weights, kLevelBlend, t, columns);
-  }
-  return out;
-}
 
 /// One tile's best candidate, and what a pass of it costs and leaves: of the whole tile, with its blocks'
 /// shares.
@@ -183,6 +72,32 @@ std::vector<double> tile_variances(const std::vector<PixelRect>& tiles, const Me
   return few;
 }
 
+/// Per tile: may a mix without `bsdf` serve it?
+std::vector<bool> takes_unbounded(const std::vector<bool>& lobed, size_t columns) {
+  std::vector<bool> out;
+  for (size_t t = 0; t < lobed.size(); ++t) {
+    const std::vector<size_t> around = neighbours(t, columns, lobed.size());
+    out.push_back(!lobed[t] &&
+                  std::none_of(around.begin(), around.end(), [&](size_t other) { return lobed[other]; }));
+  }
+  return out;
+}
+
+/// The measured candidate (its place among them) of least variance × cost in a tile.
+size_t best_of(const Measurements& m, const std::vector<double>& variance, const std::vector<double>& cost,
+               bool unbounded) {
+  const auto may_serve = [&](size_t k) {
+    return unbounded || is_bounded(auto_candidates()[static_cast<size_t>(m.candidates[k])]);
+  };
+  std::optional<size_t> best;
+  for (size_t k = 0; k < m.candidates.size(); ++k) {
+    if (!may_serve(k)) continue;
+    const double a = variance[k] * cost[k], b = best ? variance[*best] * cost[*best] : 0;
+    if (!best || a < b || (a == b && cost[k] < cost[*best])) best = k;
+  }
+  return best.value_or(0);
+}
+
 std::vector<Choice> choices(const std::vector<PixelRect>& tiles, const Measurements& m) {
   std::vector<double> areas;
   for (const PixelRect& tile : tiles) areas.push_back(static_cast<double>(tile.area()));
@@ -192,14 +107,11 @@ std::vector<Choice> choices(const std::vector<PixelRect>& tiles, const Measureme
   const Table compared = comparable(m.variance, m.worth, image, image_ratios(m.candidates), columns);
   const Table variance = smoothed(m.variance, m.worth, image, columns);
   const Table cost = smoothed(m.cost, m.measured, image_cost, columns);
+  const std::vector<bool> unbounded = takes_unbounded(m.lobed, columns);
   std::vector<size_t> chosen;
   std::vector<double> found;
   for (size_t t = 0; t < areas.size(); ++t) {
-    size_t best = 0;
-    for (size_t k = 1; k < m.candidates.size(); ++k) {
-      const double a = compared[t][k] * cost[t][k], b = compared[t][best] * cost[t][best];
-      if (a < b || (a == b && cost[t][k] < cost[t][best])) best = k;
-    }
+    const size_t best = best_of(m, compared[t], cost[t], unbounded[t]);
     chosen.push_back(best);
     found.push_back(areas[t] * variance[t][best]);
   }

@@ -60,6 +60,7 @@ void Bsdf::add(const Lobe& lobe, const Rgb& scale) {
         using L = std::decay_t<decltype(kind)>;
         transmits_ |= L::kTransmits && !L::kSpecular;
         specular_ += L::kSpecular;
+        lobed_ |= kSmooth<L> && !kLambertian<L> && !std::is_same_v<L, OrenNayar>;
         // Equal shares but for the scale, as in pbrt: a glossy lobe needs its samples more than its albedo
         // says, because light sampling serves it worst.
         lobes_[count_] = {lobe, scale, L::kSpecular ? 0 : share};

@@ -50,6 +50,7 @@ Rgb PathTracer::radiance(const CameraRay& camera_ray, const PassSampler& sampler
     const Bsdf bsdf = scene_.materials.shade(scene_.meshes[hit->id.mesh].material, surface, scene_.textures);
     const ShadingPoint point(surface, bsdf);
     if (walk_) walk_->stand_on(hit->id.mesh, surface.ng);
+    lobed_vertices_ += bsdf.has_lobes();
     if (bsdf.has_non_specular()) sum += throughput * direct_.estimate(point, sampler, depth);
     if (depth + 1 >= max_depth_ || bsdf.specular_count() == 0) return sum;
     Vec3f direction;

@@ -27,6 +27,8 @@ class PathTracer {
   Rgb radiance(const CameraRay& ray, const PassSampler& sampler, bool emission = true);
   /// What radiance() leaves out then.
   Rgb emission(const CameraRay& ray);
+  /// Vertices so far whose material may have narrow lobes.
+  uint64_t lobed_vertices() const { return lobed_vertices_; }
 
  private:
   Rgb emitted(const Hit& hit, const Ray& ray);
@@ -53,6 +55,7 @@ class PathTracer {
   DirectLight direct_;
   int max_depth_;
   QueryCounters& counters_;
+  uint64_t lobed_vertices_ = 0;
   std::vector<ScatterVertex> vertices_, far_vertices_;
   std::optional<MediumLines> lines_;
 };

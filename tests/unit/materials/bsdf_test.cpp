@@ -106,6 +106,18 @@ TEST(Bsdf, EqualIndicesGoStraightOn) {
   EXPECT_NEAR(sample->f.x * std::abs(sample->wi.z), 0.25, 1e-6);
 }
 
+TEST(Bsdf, KnowsWhetherLobesMayBeNarrow) {
+  Bsdf bsdf(flat_point(), kUp);
+  bsdf.add(Lambert{Rgb(0.5f)});
+  bsdf.add(oren_nayar(Rgb(0.5f), 20));
+  bsdf.add(SpecularReflection{Rgb(1), FresnelDielectric{1, 1.5}});
+  EXPECT_FALSE(bsdf.has_lobes()) << "a mirror takes no light samples";
+  bsdf.add(MicrofacetReflection{Rgb(1), {0.3, 0.3}, FresnelDielectric{1, 1.5}}, Rgb(0));
+  EXPECT_FALSE(bsdf.has_lobes()) << "a black lobe is none";
+  bsdf.add(MicrofacetReflection{Rgb(1), {0.3, 0.3}, FresnelDielectric{1, 1.5}});
+  EXPECT_TRUE(bsdf.has_lobes());
+}
+
 TEST(Bsdf, ScaleMultipliesAndBlackAddsNothing) {
   Bsdf bsdf(flat_point(), kUp);
   bsdf.add(Lambert{Rgb(1)}, Rgb(0));

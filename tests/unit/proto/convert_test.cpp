@@ -134,7 +134,7 @@ TEST(Convert, TasksCostsAndReportsComeBack) {
                              0.5,
                              {{0, *parse_mix("sa:4"), 2}, {0, *parse_mix("bsdf:1+line-sa@v:1/free"), 1}},
                              9});
-  expect_round_trip(MixCost{8, 0.25, 1000, 20, 1, 3.5, {7, 0.125}, 64, 7.25, 1e9, 0.125});
+  expect_round_trip(MixCost{8, 0.25, 1000, 20, 1, 3.5, {7, 0.125}, 64, 7.25, 40, 1e9, 0.125});
   expect_round_trip(LoadReport{0.1, 0.2, {{"lens", "a.pbrt:3:1: aperture"}}, {"no texture"}});
   expect_round_trip(WorkerInfo{"uuid", "host", "avx2", 4});
 }

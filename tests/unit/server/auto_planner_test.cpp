@@ -165,6 +165,18 @@ TEST(AutoPlanner, FewPixelsDoNotOverruleTheImage) {
     EXPECT_NE(tile.candidate, 3);
 }
 
+/// Where a lobe may be narrow a few pixels cannot tell how bright its rare bright samples are.
+TEST(AutoPlanner, TilesWithLobesAndThoseBesideThemTakeNoMixWithoutBsdf) {
+  const JobSpec spec = spec_of(6, CpuSecondsBudget{10});
+  constexpr int kPoints = 4;  // sa:4
+  ASSERT_FALSE(is_bounded(auto_candidates()[kPoints]));
+  Pilot pilot = uniform_pilot(6);
+  for (int t = 0; t < 6; ++t) set(pilot, t, kPoints, {0.1});
+  pilot[1][1].lobed_pixels = 1;
+  const AutoPlan plan = planned(spec, pilot);
+  for (size_t t = 0; t < 6; ++t) EXPECT_EQ(plan.tiles[t].candidate == kPoints, t > 2) << "tile " << t;
+}
+
 TEST(AutoPlanner, PassCountsPlanFromWorkAlone) {
   Pilot pilot = uniform_pilot(3);
   set(pilot, 1, 2, {1, 1e-6, 0.2});
