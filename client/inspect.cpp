@@ -14,6 +14,7 @@
 #include "client/submission.h"
 #include "proto/status.h"
 #include "scenes/curve.h"
+#include "scenes/hair_params.h"
 #include "scenes/mesh.h"
 #include "scenes/needs.h"
 #include "scenes/parser.h"
@@ -88,6 +89,7 @@ absl::StatusOr<Inspection> inspect(const std::string& path) {
   Inspection out;
   ASSIGN_OR_RETURN(out.defaults, scene_defaults(scene));
   out.warnings = warnings_of(scene, out.defaults);
+  for (const MaterialEntity& material : scene.materials) RETURN_IF_ERROR(check_hair(material, scene));
   const FolderFiles files(std::filesystem::path(path).parent_path());
   ASSIGN_OR_RETURN(out.counts, count(scene, files, out.warnings));
   out.needs = needs_of(scene);

@@ -81,6 +81,14 @@ absl::Status set_image(const JobOptions& options, const SceneDefaults& scene, Jo
   return absl::OkStatus();
 }
 
+/// Empty text means «not given» in the structures here; typed, as a script's unset variable, it is a fault.
+void refuse_empty_values(CLI::App& app) {
+  for (CLI::Option* const option :
+       app.get_options([](const CLI::Option* o) { return o->get_items_expected() > 0; }))
+    option->check(
+        [](const std::string& value) { return std::string(value.empty() ? "must not be empty" : ""); });
+}
+
 }  // namespace
 
 void add_server_options(CLI::App& app, ServerOptions& o, bool from_environment) {
@@ -151,6 +159,7 @@ void add_job_options(CLI::App& app, JobOptions& o) {
       ->type_name("T0,T1,BINS");
   app.add_option("--seed", o.seed, "Random seed (default 0)")->type_name("N");
   app.add_flag("--strict", o.strict, "Warnings about the scene are errors");
+  refuse_empty_values(app);
 }
 
 absl::StatusOr<JobSpec> make_job(const JobOptions& o, const SceneDefaults& scene) {

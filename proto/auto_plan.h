@@ -8,9 +8,14 @@
 
 namespace penumbra {
 
-/// What `auto` chooses from, in the order of their numbers. On lights that no line serves, a candidate with
-/// lines becomes one with points (worker/strategies), and costs and errs accordingly.
+/// What `auto` chooses from, in the order of their numbers. A pilot leaves out those that a scene has no use
+/// for: lines where no light serves them, medium=line without media that a light at hand shines into. Lines
+/// of the lens and of time are none of them: what they cost is more than they bring
+/// (worker/effects/README.md).
 const std::vector<Mix>& auto_candidates();
+
+/// How many of them any scene may use.
+size_t common_candidates();
 
 /// Whether f / p is bounded, because directions are also drawn from the material's lobes. Of any other mix a
 /// few samples cannot tell what it does where a lobe is narrow.

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "proto/status.h"
@@ -119,25 +120,27 @@ absl::Status parse_combination(std::string_view word, Mix& mix) {
   return absl::OkStatus();
 }
 
-/// `lens=`, `medium=` or `motion=`; false: another word.
-absl::StatusOr<bool> parse_effect(std::string_view word, Mix& mix) {
-  const auto lines = [](std::string_view value, std::string_view message) -> absl::StatusOr<bool> {
-    if (value != "point" && value != "line") return fault(value, message);
-    return value == "line";
-  };
-  if (consume_prefix(word, "lens=")) {
-    ASSIGN_OR_RETURN(const bool line, lines(word, "a lens is sampled by lens=point or lens=line"));
-    mix.lens = line ? LensSampling::kLine : LensSampling::kPoint;
-    return true;
-  }
-  if (consume_prefix(word, "medium=")) {
-    ASSIGN_OR_RETURN(const bool line, lines(word, "media are lit by medium=point or medium=line"));
-    mix.medium = line ? MediumSampling::kLine : MediumSampling::kPoint;
-    return true;
-  }
-  if (consume_prefix(word, "motion=")) {
-    ASSIGN_OR_RETURN(const bool line, lines(word, "motion is sampled by motion=point or motion=line"));
-    mix.motion = line ? MotionSampling::kLine : MotionSampling::kPoint;
+/// How one effect is sampled: `lens=point`, …
+struct EffectWord {
+  std::string_view prefix, fault;
+  void (*set)(Mix& mix, bool line);
+};
+constexpr EffectWord kEffectWords[] = {
+    {"lens=", "a lens is sampled by lens=point or lens=line",
+     [](Mix& mix, bool line) { mix.lens = line ? LensSampling::kLine : LensSampling::kPoint; }},
+    {"medium=", "media are lit by medium=point or medium=line",
+     [](Mix& mix, bool line) { mix.medium = line ? MediumSampling::kLine : MediumSampling::kPoint; }},
+    {"motion=", "motion is sampled by motion=point or motion=line",
+     [](Mix& mix, bool line) { mix.motion = line ? MotionSampling::kLine : MotionSampling::kPoint; }}};
+
+/// Reads one of kEffectWords, none of which may stand twice; `said`: those that did. False: another word.
+absl::StatusOr<bool> parse_effect(std::string_view word, Mix& mix, std::set<std::string_view>& said) {
+  for (const EffectWord& effect : kEffectWords) {
+    std::string_view value = word;
+    if (!consume_prefix(value, effect.prefix)) continue;
+    if (value != "point" && value != "line") return fault(value, effect.fault);
+    if (!said.insert(effect.prefix).second) return fault(word, fmt::format("{} stands twice", effect.prefix));
+    effect.set(mix, value == "line");
     return true;
   }
   return false;
@@ -145,17 +148,14 @@ absl::StatusOr<bool> parse_effect(std::string_view word, Mix& mix) {
 
 /// What stands behind the strategies, each after a slash: a combination, then how effects are sampled.
 absl::Status parse_rest(std::string_view rest, Mix& mix) {
-  bool effects = false;
+  std::set<std::string_view> effects;
   for (bool first = true; !rest.empty(); first = false) {
     const size_t slash = std::min(rest.find('/', 1), rest.size());
     const std::string_view word = rest.substr(1, slash - 1);
     rest.remove_prefix(slash);
-    ASSIGN_OR_RETURN(const bool effect, parse_effect(word, mix));
-    if (effect) {
-      effects = true;
-      continue;
-    }
-    if (effects) return fault(word, "lens=, medium= and motion= must stand last");
+    ASSIGN_OR_RETURN(const bool effect, parse_effect(word, mix, effects));
+    if (effect) continue;
+    if (!effects.empty()) return fault(word, "lens=, medium= and motion= must stand last");
     if (!first)
       return fault(word,
                    "after the combination there is only lens=point|line, medium=point|line and "

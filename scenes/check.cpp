@@ -5,6 +5,7 @@
 
 #include "scenes/curve.h"
 #include "scenes/diagnostics.h"
+#include "scenes/hair_params.h"
 #include "scenes/mesh.h"
 #include "scenes/ply.h"
 #include "scenes/quadrics.h"
@@ -50,6 +51,8 @@ class Checker {
 absl::Status check_files(const SceneDescription& description, const SceneFiles& files) {
   if (!description.has_world)
     return invalid_input("{}: no WorldBegin: there is nothing to render", description.files.front());
+  for (const MaterialEntity& material : description.materials)
+    RETURN_IF_ERROR(check_hair(material, description));
   Checker checker(description, files);
   for (const ShapeEntity& shape : description.shapes) RETURN_IF_ERROR(checker.check(shape));
   for (const ObjectEntity& object : description.objects)

@@ -175,7 +175,8 @@ bool add_tubes(const Curve& curve, const Matrix& to_world, Tubes& tubes) {
     const double wider = 0.5 * scale *
                          std::max(curve.width(double(k) / double(curve.pieces.size())),
                                   curve.width(double(k + 1) / double(curve.pieces.size())));
-    const int chords = std::max(chords_of(piece, tolerance), chords_for_length(piece, kMostSlender * wider));
+    const int enough = std::max(chords_of(piece, tolerance), chords_for_length(piece, kMostSlender * wider));
+    const int chords = chords_for_turn(piece, enough, tolerance);
     for (int i = k == 0 ? 0 : 1; i <= chords; ++i) {
       const double t = static_cast<double>(i) / chords,
                    u = (static_cast<double>(k) + t) / curve.pieces.size();

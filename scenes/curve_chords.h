@@ -28,6 +28,29 @@ inline int chords_of(const CurvePiece& p, double tolerance) {
   return static_cast<int>(std::clamp(chords, 1., static_cast<double>(kMostCurveSegments)));
 }
 
+/// From one chord, or cross-section, to the next a curve turns by no more than this: more would be seen as a
+/// corner where it is as wide as its bends are. A ribbon's two triangles between two sections then leave the
+/// twisted surface by less than a hundredth of its width (1 - cos and half the bulge of a bilinear patch).
+constexpr double kMostTurn = 0.125;
+
+/// At least `chords`, and as many more as it takes that a chord longer than `shortest` turns by kMostTurn at
+/// most. With the shortest a tenth of the width that is none where the bends are fifty times wider than the
+/// curve, as in hair, and no more than eight times as many at a bend as narrow as the curve.
+inline int chords_for_turn(const CurvePiece& p, int chords, double shortest) {
+  for (;;) {
+    double most = 0;
+    for (int i = 0; i < chords; ++i) {
+      const double t0 = static_cast<double>(i) / chords, t1 = static_cast<double>(i + 1) / chords;
+      if ((point_at(p, t1) - point_at(p, t0)).length() <= shortest) continue;
+      const Vec3d a = tangent_at(p, t0), b = tangent_at(p, t1);
+      most = std::max(most, std::atan2(a.cross(b).length(), a.dot(b)));
+    }
+    if (!(most > kMostTurn) || chords == kMostCurveSegments) return chords;
+    const double wanted = std::ceil(chords * std::clamp(most / kMostTurn, 1.1, 2.));
+    chords = static_cast<int>(std::min(wanted, static_cast<double>(kMostCurveSegments)));
+  }
+}
+
 /// The longest segment, in radii: what Embree computes in single precision of a side of length L puts r² off
 /// by a few u L², which at 256 r is some thousandths of it.
 constexpr double kMostSlender = 256;

@@ -128,7 +128,8 @@ bool Parser::is_in_place(const Directive& directive, FileLoc loc) {
   else if (directive.place == Directive::Place::kBeforeWorld && builder_.in_world())
     why = "after WorldBegin";
   if (why && misplaced_.insert(directive.name).second)
-    diagnostics_.warn(loc, "{} {} is left out (as in pbrt); the first of its kind", directive.name, why);
+    diagnostics_.warn(loc, "{} {} is left out, as in pbrt (said once of all {})", directive.name, why,
+                      directive.name);
   return !why;
 }
 

@@ -8,10 +8,6 @@
 namespace penumbra {
 namespace {
 
-/// A strip turns by at most so much from one cross-section to the next: its two triangles then leave the
-/// twisted surface by less than a hundredth of the width (1 - cos and half the bulge of a bilinear patch).
-constexpr double kMostTurn = 0.125;
-
 /// From a to b at constant speed on the great circle. Opposite normals have none: pbrt gives an undefined
 /// one, here it is the first until the middle.
 Vec3d turned(const Vec3d& a, const Vec3d& b, double angle, double t) {
@@ -41,7 +37,8 @@ MeshOr make_ribbon(const ShapeEntity& shape, const MeshContext& context) {
     const CurvePiece& piece = curve.pieces[k];
     const Vec3d &n0 = curve.normals[k], &n1 = curve.normals[k + 1];
     const double angle = std::atan2(n0.cross(n1).length(), n0.dot(n1));
-    const int steps = std::max(chords_of(piece, tolerance), static_cast<int>(std::ceil(angle / kMostTurn)));
+    const int chords = chords_for_turn(piece, chords_of(piece, tolerance), tolerance);
+    const int steps = std::max(chords, static_cast<int>(std::ceil(angle / kMostTurn)));
     for (int i = k == 0 ? 0 : 1; i <= steps; ++i) {
       const double t = static_cast<double>(i) / steps, u = (static_cast<double>(k) + t) / curve.pieces.size();
       add_section(mesh, point_at(piece, t), tangent_at(piece, t), turned(n0, n1, angle, t), curve.width(u),

@@ -214,7 +214,7 @@ int pilot_blocks(const JobSpec& spec, const PixelRect& tile) {
   double most = kMostBlockShare * area / kBlockPixels;
   if (const auto* spp = std::get_if<SppBudget>(&spec.budget))
     most = std::min(most, kPilotShare * static_cast<double>(spp->passes) * area /
-                              (kBlockSamples * static_cast<double>(auto_candidates().size())));
+                              (kBlockSamples * static_cast<double>(common_candidates())));
   return static_cast<int>(std::max(1.0, std::round(most)));
 }
 

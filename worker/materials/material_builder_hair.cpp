@@ -1,14 +1,14 @@
 // pbrt's `hair`, v3's names and v4's.
-#include <limits>
+#include <algorithm>
 
 #include "proto/status.h"
+#include "scenes/hair_params.h"
 #include "worker/materials/material_builder.h"
 
 namespace penumbra {
 
 /// As in pbrt, absorption goes before a colour, a colour before melanin; none at all is brown hair.
 MaterialBuilder::Built MaterialBuilder::hair(const MaterialEntity& entity) {
-  constexpr float kUnbounded = std::numeric_limits<float>::max();
   const auto given = [&](std::string_view name) { return entity.params.find(name) != nullptr; };
   const char* const color_name = given("reflectance") ? "reflectance" : "color";
   HairMaterial m{.tint = {Rgb(0)}};
@@ -28,12 +28,19 @@ MaterialBuilder::Built MaterialBuilder::hair(const MaterialEntity& entity) {
                                       given("sigma_a") ? "sigma_a" : color_name, name));
   }
   const float brown = given("eumelanin") || given("pheomelanin") ? 0 : 1.3f;
-  ASSIGN_OR_RETURN(m.eumelanin, number(entity, "eumelanin", brown, 0, kUnbounded));
-  ASSIGN_OR_RETURN(m.pheomelanin, number(entity, "pheomelanin", 0, 0, kUnbounded));
-  ASSIGN_OR_RETURN(m.eta, number(entity, "eta", 1.55f, 1, kUnbounded));
-  ASSIGN_OR_RETURN(m.beta_m, number(entity, "beta_m", 0.3f, 0, 1));
-  ASSIGN_OR_RETURN(m.beta_n, number(entity, "beta_n", 0.3f, 0, 1));
-  ASSIGN_OR_RETURN(m.alpha, number(entity, "alpha", 2, -90, 90));
+  const auto read = [&](std::string_view name, float fallback) {
+    const auto known = hair_numbers();
+    const auto range =
+        std::find_if(known.begin(), known.end(), [&](const HairNumber& n) { return n.name == name; });
+    PENUMBRA_CHECK(range != known.end());
+    return number(entity, name, fallback, range->least, range->most);
+  };
+  ASSIGN_OR_RETURN(m.eumelanin, read("eumelanin", brown));
+  ASSIGN_OR_RETURN(m.pheomelanin, read("pheomelanin", 0));
+  ASSIGN_OR_RETURN(m.eta, read("eta", 1.55f));
+  ASSIGN_OR_RETURN(m.beta_m, read("beta_m", 0.3f));
+  ASSIGN_OR_RETURN(m.beta_n, read("beta_n", 0.3f));
+  ASSIGN_OR_RETURN(m.alpha, read("alpha", 2));
   return m;
 }
 

@@ -114,13 +114,22 @@ class CandidateRun {
   std::array<PixelSums, size_t(kBlockWidth) * kBlockHeight> sums_;
 };
 
+/// Whether some light is not infinitely far away: a point of it can be the apex of lines through media.
+bool is_at_hand(const LightSet& lights) {
+  return !lights.area.empty() ||
+         std::any_of(lights.delta.begin(), lights.delta.end(),
+                     [](const DeltaEmitter& e) { return !std::holds_alternative<DistantEmitter>(e); });
+}
+
 /// Whether the candidate is what it says for at least one light; one with lines that no light serves would be
 /// the twin of one with points.
-bool fits(const Mix& mix, const LightSet& lights) {
+bool fits(const Mix& mix, const Scene& scene) {
+  if (mix.medium == MediumSampling::kLine && !(scene.effects.media && is_at_hand(scene.lights))) return false;
+  const std::vector<AreaEmitter>& area = scene.lights.area;
   return std::all_of(mix.strategies.begin(), mix.strategies.end(), [&](const StrategyCount& wanted) {
-    return !is_line(wanted.kind) ||
-           std::any_of(lights.area.begin(), lights.area.end(),
-                       [&](const AreaEmitter& e) { return is_line(fit(wanted, e)); });
+    return !is_line(wanted.kind) || std::any_of(area.begin(), area.end(), [&](const AreaEmitter& e) {
+      return is_line(fit(wanted, e));
+    });
   });
 }
 
@@ -188,7 +197,7 @@ std::vector<MixCost> measure_candidates(const Rendering& rendering, const TileTa
   Runs runs;
   std::vector<size_t> order, place;
   for (size_t k = 0; k < chosen.size(); ++k) {
-    if (!fits(chosen[k].chosen, rendering.scene.lights)) continue;
+    if (!fits(chosen[k].chosen, rendering.scene)) continue;
     order.push_back(runs.size());
     place.push_back(k);
     runs.push_back(std::make_unique<CandidateRun>(rendering, chosen[k]));

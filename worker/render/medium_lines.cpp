@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "worker/lights/spot_cone.h"
+
 namespace penumbra {
 namespace {
 
@@ -107,9 +109,14 @@ MediumLines::Apex MediumLines::choose(size_t light, const Vec2d& u) const {
   return apex;
 }
 
-bool MediumLines::clip_to_front(const Apex& apex, const Ray& ray, double& t0, double& t1) {
+bool MediumLines::clip_to_lit(const Apex& apex, const Ray& ray, double& t0, double& t1) const {
+  const LightSet& lights = scene_.lights;
+  if (apex.light >= lights.area.size()) {
+    const size_t delta = apex.light - lights.area.size() - lights.environments.size();
+    const auto* const spot = std::get_if<SpotEmitter>(&lights.delta[delta]);
+    return spot ? clip_to_cone(*spot, Vec3d(ray.origin), Vec3d(ray.direction), t0, t1) : t0 < t1;
+  }
   const double height = apex.n.dot(Vec3d(ray.origin) - apex.p), slope = apex.n.dot(Vec3d(ray.direction));
-  if (apex.n.length2() == 0) return t0 < t1;
   if (slope == 0) return height > 0 && t0 < t1;
   const double crossing = -height / slope;
   if (slope > 0)
@@ -177,7 +184,7 @@ Rgb MediumLines::along(const Apex& apex, const Ray& ray, const Start& start, siz
                        double u) {
   const MediumPart& in = walk_.parts()[part];
   double t0 = in.t0, t1 = std::min(in.t1, until);
-  if (!(t0 < t1) || !clip_to_front(apex, ray, t0, t1)) return Rgb(0);
+  if (!(t0 < t1) || !clip_to_lit(apex, ray, t0, t1)) return Rgb(0);
   find_visible(apex, ray, t0, t1);
   angles_.clear();
   double total = 0;

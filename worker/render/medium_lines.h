@@ -42,8 +42,8 @@ class MediumLines {
   };
   Apex choose(size_t light, const Vec2d& u) const;
   Rgb along(const Apex& apex, const Ray& ray, const Start& start, size_t part, double until, double u);
-  /// The part of [t0,t1] in front of the apex.
-  static bool clip_to_front(const Apex& apex, const Ray& ray, double& t0, double& t1);
+  /// The part of [t0,t1] that the light may shine on: in front of an area light, in a spot's cone.
+  bool clip_to_lit(const Apex& apex, const Ray& ray, double& t0, double& t1) const;
   void find_visible(const Apex& apex, const Ray& ray, double t0, double t1);
   /// Radiance × cosine / squared distance from the apex at x, or what a light without extent gives.
   Rgb arriving(const Apex& apex, const Vec3f& x, Vec3f& wi, double& distance) const;

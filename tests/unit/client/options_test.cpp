@@ -102,13 +102,27 @@ TEST(MakeJob, EveryFaultNamesItsFlag) {
   EXPECT_THAT(with(&JobOptions::crop, "0,0,65,48"), StartsWith("--crop: "));
   EXPECT_THAT(with(&JobOptions::crop, "5,5"), StartsWith("--crop: "));
   EXPECT_THAT(with(&JobOptions::camera_grid, "0"), StartsWith("--camera-grid: "));
-  for (const char* bins :
-       {"1,2", "1,2,3,4", "2,1,4", "-1,2,4", "0,1,0", "0,1,1025", "0,inf,4", "0,nan,4", "1,1.000001,100"})
+  for (const char* bins : {"1,2", "1,2,3,4", "2,1,4", "-1,2,4", "0,1,0", "0,1,1025", "0,inf,4", "0,nan,4",
+                           "nan,1,4", "1,1.000001,100", "0,1e39,4", "0,1e-38,1", "0,1e-300,4"})
     EXPECT_THAT(with(&JobOptions::transient, bins), StartsWith("--transient: ")) << bins;
   EXPECT_THAT(with(&JobOptions::max_depth, "0"), StartsWith("--max-depth: "));
   EXPECT_THAT(with(&JobOptions::tile, "5000"), StartsWith("--tile: "));
   EXPECT_THAT(with(&JobOptions::seed, "-1"), StartsWith("--seed: "));
   EXPECT_THAT(with(&JobOptions::sampler, "halton"), StartsWith("--sampler: "));
+}
+
+TEST(JobOptions, AnEmptyValueIsNoValue) {
+  for (const char* flag : {"--transient", "--budget", "--mix", "--region", "--reference", "--crop"}) {
+    CLI::App app;
+    JobOptions o;
+    add_job_options(app, o);
+    try {
+      app.parse(std::vector<std::string>{"", flag, "s.pbrt"});  // CLI11 takes them from the back
+      ADD_FAILURE() << flag << " '' was taken";
+    } catch (const CLI::ParseError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(flag));
+    }
+  }
 }
 
 TEST(MakeJob, BinsThatATileOrThePictureCannotHoldAreRefused) {

@@ -48,10 +48,16 @@ TEST(Mix, LabelsAreReadBack) {
 
 TEST(Mix, FaultsNameTheWord) {
   const std::pair<const char*, const char*> faults[] = {
-      {"sa/motion=curve", "'curve'"},           {"sa/lens=plane", "'plane'"},
-      {"sa/lens=", "lens=point or lens=line"},  {"sa/lens=line/balance", "'balance'"},
-      {"sa/balance/power", "'power'"},          {"sa/", "unknown combination"},
-      {"sa/balance/", "after the combination"}, {"auto/lens=line", "'auto'"}};
+      {"sa/motion=curve", "'curve'"},
+      {"sa/lens=plane", "'plane'"},
+      {"sa/lens=", "lens=point or lens=line"},
+      {"sa/lens=line/balance", "'balance'"},
+      {"sa/balance/power", "'power'"},
+      {"sa/", "unknown combination"},
+      {"sa/balance/", "after the combination"},
+      {"auto/lens=line", "'auto'"},
+      {"sa/motion=line/motion=point", "motion= stands twice"},
+      {"sa/lens=line/medium=line/lens=line", "lens= stands twice"}};
   for (const auto& [text, message] : faults) {
     const auto mix = parse_mix(text);
     ASSERT_FALSE(mix.ok()) << text;

@@ -21,22 +21,53 @@ Material "matte"
 Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ] "point P" [ -9 0 -9  -9 0 9  9 0 9  9 0 -9 ]
 )";
 
-TEST(CandidatePilot, AMixThatHasMissedTheLightIsNotWithoutNoise) {
-  const ScenePtr scene = test::load_text(kSmallLamp);
-  ASSERT_TRUE(scene);
-  const std::vector<std::string> names = {"bsdf:4", "sa:4", "bsdf:2+sa:2"};
+std::vector<MixCost> pilot(const Scene& scene, const std::vector<std::string>& names) {
   const JobSpec job = test::job(32, 32, {"auto"}, 4);
-  const auto camera = Camera::build(scene->description, job.width, job.height);
-  ASSERT_TRUE(camera.ok());
+  const auto camera = Camera::build(scene.description, job.width, job.height);
+  EXPECT_TRUE(camera.ok());
   TileTask task;
   task.kind = TaskKind::kPilot;
   task.tile = job.crop;
   task.pilot_blocks = 1;
   std::vector<ChosenMix> candidates;
   for (const std::string& name : names) candidates.push_back({0, *parse_mix(name)});
-  const Rendering rendering{*scene, job, *camera, task.kind, task.tile, light_pixels(*scene, *camera, task.tile)};
+  const Rendering rendering{scene,     job,       *camera,
+                            task.kind, task.tile, light_pixels(scene, *camera, task.tile)};
   const std::atomic<bool> cancel{false};
-  const std::vector<MixCost> costs = measure_candidates(rendering, task, candidates, cancel);
+  return measure_candidates(rendering, task, candidates, cancel);
+}
+
+/// Fog in all of space, with `light` in it.
+ScenePtr foggy(std::string_view light) {
+  return test::load_text(std::string(R"(MakeNamedMedium "fog" "string type" "homogeneous"
+  "rgb sigma_s" [ 0.1 0.1 0.1 ] "rgb sigma_a" [ 0 0 0 ]
+MediumInterface "" "fog"
+LookAt 0 3 4  0 0 0  0 1 0
+Camera "perspective" "float fov" 40
+WorldBegin
+)") + std::string(light));
+}
+
+// Without the effect, or without a light that lines can start from, such a candidate is the twin of another.
+TEST(CandidatePilot, MediumLinesAreTriedWhereMediaAndALightServeThem) {
+  const std::vector<std::string> names = {"sa:2", "sa:2/medium=line"};
+  const auto tried = [&](const ScenePtr& scene) {
+    EXPECT_TRUE(scene);
+    const std::vector<MixCost> costs = pilot(*scene, names);
+    EXPECT_EQ(costs.size(), 2u);
+    EXPECT_GT(costs[0].pixels, 0);
+    return costs[1].pixels > 0;
+  };
+  EXPECT_FALSE(tried(test::load_text(kSmallLamp)));
+  EXPECT_TRUE(tried(foggy("LightSource \"spot\" \"point3 from\" [ 0 3 0 ] \"point3 to\" [ 0 0 0 ]")));
+  EXPECT_FALSE(tried(foggy("LightSource \"distant\" \"point3 from\" [ 0 3 0 ] \"point3 to\" [ 0 0 0 ]")));
+}
+
+TEST(CandidatePilot, AMixThatHasMissedTheLightIsNotWithoutNoise) {
+  const ScenePtr scene = test::load_text(kSmallLamp);
+  ASSERT_TRUE(scene);
+  const std::vector<std::string> names = {"bsdf:4", "sa:4", "bsdf:2+sa:2"};
+  const std::vector<MixCost> costs = pilot(*scene, names);
   ASSERT_EQ(costs.size(), 3u);
   EXPECT_GT(costs[0].relative_variance, 100 * costs[1].relative_variance);
   EXPECT_GT(costs[0].relative_variance, 100 * costs[2].relative_variance);

@@ -135,8 +135,40 @@ TEST(Curve, ChordsStayWithinATenthOfTheWidth) {
         most = std::max(most, distance(chord, on));
       }
     EXPECT_LE(most, kCurveTolerance * width * 1.001);
-    EXPECT_GE(most, kCurveTolerance * width * 0.2) << "far more chords than are needed";
+    // As wide as its bends are, a curve needs more for their sake (below).
+    if (width < 1) {
+      EXPECT_GE(most, kCurveTolerance * width * 0.2) << "far more chords than are needed";
+    }
   }
+}
+
+// A bend about as wide as the curve: within a tenth of the width, chords would turn by 0.9 at a joint.
+TEST(Curve, ChordsOfAThickCurveHaveNoCorners) {
+  const Curve c = curve("\"point3 P\" [0 0 0 0 2 0 1 2 0 1 0 0] \"float width\" 0.2");
+  Tubes tubes;
+  EXPECT_TRUE(add_tubes(c, Matrix(), tubes));
+  double most = 0;
+  for (size_t i = 0; i + 2 < tubes.points.size(); ++i) {
+    const auto at = [&](size_t k) { return Vec3d(tubes.points[k].x, tubes.points[k].y, tubes.points[k].z); };
+    const Vec3d a = at(i + 1) - at(i), b = at(i + 2) - at(i + 1);
+    most = std::max(most, std::atan2(a.cross(b).length(), a.dot(b)));
+  }
+  EXPECT_LE(most, kMostTurn * 1.01);
+  EXPECT_LE(tubes.segments.size(), 64u) << "far more chords than are needed";
+}
+
+// A hair's bends are far wider than the hair, and a cusp is not refined for ever.
+TEST(Curve, ThinCurvesAndCuspsNeedNoMoreChords) {
+  const auto segments = [](const std::string& text) {
+    const Curve c = curve(text);
+    Tubes tubes;
+    add_tubes(c, Matrix(), tubes);
+    return tubes.segments.size();
+  };
+  const std::string bend = "\"point3 P\" [0 0 0 0 2 0 1 2 0 1 0 0] \"float width\" ";
+  const CurvePiece piece = curve(bend + "0.001").pieces[0];
+  EXPECT_EQ(segments(bend + "0.001"), size_t(chords_of(piece, 0.001 * kCurveTolerance)));
+  EXPECT_LE(segments("\"point3 P\" [0 0 0 1 1 0 0 1 0 1 0 0] \"float width\" 0.1"), 256u);
 }
 
 TEST(Curve, ScalesWithItsTransformAndSaysWhereItCannot) {

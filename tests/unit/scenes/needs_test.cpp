@@ -134,6 +134,20 @@ TEST(CheckFiles, ATextWithoutAWorldIsNoPicture) {
   }
 }
 
+TEST(CheckFiles, HairThatCannotBeIsRefusedAtItsPlace) {
+  SceneFolder folder;
+  const auto fault = [&](std::string_view params) {
+    const auto scene = folder.parse(fmt::format("WorldBegin\nMaterial \"hair\" {}", params));
+    EXPECT_TRUE(scene.ok());
+    return message_of(check_files(*scene, folder.files()));
+  };
+  EXPECT_EQ(fault("\"float beta_m\" 1.5"), "a.pbrt:2:17: beta_m 1.5 is not in [0, 1]");
+  for (const char* params : {"\"float beta_n\" -0.1", "\"float eta\" 0.5", "\"float alpha\" 91",
+                             "\"float eumelanin\" -1", "\"float pheomelanin\" -1"})
+    EXPECT_THAT(fault(params), testing::StartsWith("a.pbrt:2:17: ")) << params;
+  EXPECT_EQ(fault("\"float beta_m\" 1 \"float beta_n\" 0 \"float eta\" 1 \"rgb color\" [ 1 1 1 ]"), "");
+}
+
 TEST(CheckFiles, SeesWhatAClientCanKnow) {
   using testing::StartsWith;
   EXPECT_THAT(checked("\"plymesh\" \"string filename\" \"missing.ply\""),

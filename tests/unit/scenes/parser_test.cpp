@@ -141,6 +141,16 @@ TEST(Directives, OutOfPlaceMeansLeftOutAndSaid) {
               ElementsAre(HasSubstr("Shape before WorldBegin"), HasSubstr("Film after WorldBegin")));
 }
 
+TEST(Directives, WhatIsOutOfPlaceAgainAndAgainIsSaidOnce) {
+  const SceneDescription scene =
+      parsed("TransformTimes 0 2\nWorldBegin\nTransformTimes 0 3\nTransformTimes 0 4");
+  EXPECT_EQ(scene.transform_end_time, 2);
+  EXPECT_THAT(
+      scene.warnings,
+      ElementsAre("a.pbrt:3:1: TransformTimes after WorldBegin is left out, as in pbrt (said once of all "
+                  "TransformTimes)"));
+}
+
 TEST(Directives, TextAfterWorldEndIsReadButNotRendered) {
   const SceneDescription scene =
       parsed("WorldBegin Shape \"sphere\" WorldEnd WorldBegin Shape \"disk\" WorldEnd");
