@@ -11,7 +11,6 @@
 #include <chrono>
 #include <cstring>
 #include <filesystem>
-#include <set>
 
 #include "proto/status.h"
 
@@ -72,13 +71,6 @@ absl::Status read_pieces(int file, uint64_t size, const std::string& path, Take 
   return absl::OkStatus();
 }
 
-absl::Status sync_path(const std::string& path) {
-  const File file(path, O_RDONLY);
-  if (!file.ok()) return system_error("opening", path);
-  if (::fsync(file.get()) != 0) return system_error("flushing", path);
-  return absl::OkStatus();
-}
-
 absl::Status rename_to(const std::string& from, const std::string& to) {
   if (::rename(from.c_str(), to.c_str()) != 0) return system_error("renaming to", to);
   return absl::OkStatus();
@@ -129,10 +121,14 @@ absl::Status BlobWriter::finish(bool flush) {
     ::unlink(path_.c_str());
     return invalid_input("blob {}: its bytes have the digest {}", digest_, found);
   }
-  flush = flush && durability_ == Durability::kPowerLoss;
-  if (flush && ::fsync(file_) != 0) return system_error("flushing", path_);
+  flush = flush && flush_ != nullptr;
+  if (flush) RETURN_IF_ERROR(flush_->flush(file_, path_));
   RETURN_IF_ERROR(rename_to(path_, target_));
-  return flush ? sync_path(fs::path(target_).parent_path()) : absl::OkStatus();
+  if (!flush) return absl::OkStatus();
+  const std::string folder = fs::path(target_).parent_path();
+  const File names(folder, O_RDONLY);
+  if (!names.ok()) return system_error("opening", folder);
+  return flush_->flush(names.get(), folder);
 }
 
 absl::StatusOr<BlobFolder> BlobFolder::open(const std::string& root, Durability durability) {
@@ -144,8 +140,12 @@ absl::StatusOr<BlobFolder> BlobFolder::open(const std::string& root, Durability 
   // All folders at once, so that storing a blob makes no new one whose parent would have to be flushed.
   for (int prefix = 0; prefix < 256; ++prefix)
     fs::create_directory(fmt::format("{}/{:02x}", root, prefix), error);
-  if (durability == Durability::kPowerLoss) RETURN_IF_ERROR(sync_path(root));
-  return BlobFolder(root, durability);
+  if (durability == Durability::kProcessEnd) return BlobFolder(root, nullptr);
+  ASSIGN_OR_RETURN(auto flush, DiskFlush::open(root));
+  const File names(root, O_RDONLY);
+  if (!names.ok()) return system_error("opening", root);
+  RETURN_IF_ERROR(flush->flush(names.get(), root));
+  return BlobFolder(root, std::move(flush));
 }
 
 std::string BlobFolder::path_of(const Digest& digest) const {
@@ -253,15 +253,10 @@ absl::Status BlobFolder::put(const Digest& digest, std::string_view bytes) const
 }
 
 absl::Status BlobFolder::sync(const std::vector<Digest>& digests) const {
-  if (durability_ == Durability::kProcessEnd) return absl::OkStatus();
-  std::set<std::string> folders;
-  for (const Digest& digest : digests) {
-    const std::string path = path_of(digest);
-    RETURN_IF_ERROR(sync_path(path));
-    folders.insert(fs::path(path).parent_path());
-  }
-  for (const std::string& folder : folders) RETURN_IF_ERROR(sync_path(folder));
-  return absl::OkStatus();
+  if (flush_ == nullptr || digests.empty()) return absl::OkStatus();
+  std::vector<std::string> files;
+  for (const Digest& digest : digests) files.push_back(path_of(digest));
+  return flush_->flush(files);
 }
 
 absl::StatusOr<std::unique_ptr<BlobWriter>> BlobFolder::write(const Digest& digest, uint64_t size,
@@ -282,7 +277,7 @@ absl::StatusOr<std::unique_ptr<BlobWriter>> BlobFolder::write(const Digest& dige
     return make_status(absl::StatusCode::kFailedPrecondition, "blob {}: offset {} of {} bytes kept", digest,
                        offset, mine.st_size);
   if (::ftruncate(file.get(), static_cast<off_t>(offset)) != 0) return system_error("truncating", path);
-  std::unique_ptr<BlobWriter> writer(new BlobWriter(path, path_of(digest), digest, file.get(), size, durability_));
+  std::unique_ptr<BlobWriter> writer(new BlobWriter(path, path_of(digest), digest, file.get(), size, flush_));
   const int descriptor = file.release();
   RETURN_IF_ERROR(
       read_pieces(descriptor, offset, path, [&](std::string_view piece) { writer->hash_.add(piece); }));

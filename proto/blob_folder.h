@@ -12,6 +12,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "proto/disk_flush.h"
 #include "proto/job.h"
 #include "proto/sha256.h"
 
@@ -20,7 +21,8 @@ namespace penumbra {
 /// 64 lower-case hexadecimal digits.
 bool is_digest(std::string_view text);
 
-/// What stored bytes survive: the end of every process and the loss of power (flushed to disk), or the former alone.
+/// What stored bytes survive: the end of every process and the loss of power (flushed to disk), or the former
+/// alone.
 enum class Durability { kPowerLoss, kProcessEnd };
 
 /// Bytes on their way into a folder. If it is destroyed before finish(), what was written stays and can be
@@ -41,19 +43,20 @@ class BlobWriter {
 
  private:
   friend class BlobFolder;
-  BlobWriter(std::string path, std::string target, Digest digest, int file, uint64_t size, Durability durability)
+  BlobWriter(std::string path, std::string target, Digest digest, int file, uint64_t size,
+             std::shared_ptr<DiskFlush> flush)
       : path_(std::move(path)),
         target_(std::move(target)),
         digest_(std::move(digest)),
         file_(file),
         size_(size),
-        durability_(durability) {}
+        flush_(std::move(flush)) {}
 
   std::string path_, target_;
   Digest digest_;
   int file_;  ///< open and locked as long as the writer lives
   uint64_t size_, written_ = 0;
-  Durability durability_;
+  std::shared_ptr<DiskFlush> flush_;  ///< null: the folder asks for none
   Sha256 hash_;
 };
 
@@ -68,7 +71,8 @@ struct BlobFile {
 class BlobFolder {
  public:
   /// Makes the folder if need be; unfinished files that nobody has touched for a day go.
-  static absl::StatusOr<BlobFolder> open(const std::string& root, Durability durability = Durability::kPowerLoss);
+  static absl::StatusOr<BlobFolder> open(const std::string& root,
+                                         Durability durability = Durability::kPowerLoss);
 
   const std::string& root() const { return root_; }
   /// Requires is_digest(digest): no other name ever reaches the disk.
@@ -107,11 +111,12 @@ class BlobFolder {
                                                     uint64_t offset) const;
 
  private:
-  BlobFolder(std::string root, Durability durability) : root_(std::move(root)), durability_(durability) {}
+  BlobFolder(std::string root, std::shared_ptr<DiskFlush> flush)
+      : root_(std::move(root)), flush_(std::move(flush)) {}
   std::string partial_path(const Digest& digest) const;
 
   std::string root_;
-  Durability durability_;
+  std::shared_ptr<DiskFlush> flush_;  ///< null: no flush is asked for
 };
 
 }  // namespace penumbra

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "proto/lock_order.h"
 #include "proto/status.h"
 
 namespace penumbra {
@@ -70,6 +71,7 @@ absl::StatusOr<std::shared_ptr<grpc::Channel>> open_channel(const std::string& a
   if (address.rfind(':') == std::string::npos)
     return invalid_input("--server: '{}' is not of the form HOST:PORT", address);
   ASSIGN_OR_RETURN(const auto security, channel_credentials(credentials));
+  ignore_lock_order();
   grpc::ChannelArguments arguments;
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 50);
   arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 2000);

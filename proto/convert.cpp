@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "proto/blob_folder.h"
 #include "proto/blocks.h"
 #include "proto/convert_check.h"
 

@@ -4,7 +4,6 @@
 // behind it needs to distrust what it gets. from_proto(to_proto(x)) == x.
 #include "absl/status/statusor.h"
 #include "proto/auto_plan.h"
-#include "proto/blob_folder.h"
 #include "proto/job.h"
 #include "proto/job.pb.h"
 #include "proto/render.pb.h"

@@ -1,4 +1,5 @@
 // The two halves of a Sync.
+#include "proto/blob_folder.h"
 #include "proto/convert.h"
 #include "proto/convert_check.h"
 

@@ -13,6 +13,7 @@
 #include <mutex>
 #include <utility>
 
+#include "proto/lock_order.h"
 #include "proto/status.h"
 #include "server/caller.h"
 
@@ -117,6 +118,7 @@ absl::StatusOr<Listener> listen(const ListenOptions& options, const std::vector<
   if (colon == std::string::npos || colon == 0)
     return invalid_input("--listen: '{}' is not of the form HOST:PORT", address);
   ASSIGN_OR_RETURN(const auto security, server_credentials(options));
+  ignore_lock_order();
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;

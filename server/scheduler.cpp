@@ -328,14 +328,17 @@ SyncAnswer Scheduler::answer(const WorkerState& state, const Now& now) {
   const auto found = workers_.find(state.worker.id);
   if (found == workers_.end()) return out;  // ended while it waited: its next report begins anew
   WorkerRecord& worker = found->second;
-  if (!state.draining) grant(worker, state.wanted, now);
-
   std::set<LeaseId> listed;
+  bool busy_in_vain = false;
   for (const HeldLease& held : state.held) {
     listed.insert(held.lease);
     const auto mine = worker.leases.find({held.lease.job, held.lease.task});
-    if (mine == worker.leases.end() || mine->second != held.lease.epoch) out.urgent = true;  // drop it
+    if (mine != worker.leases.end() && mine->second == held.lease.epoch) continue;
+    out.urgent = true;  // drop it
+    busy_in_vain |= held.begun;
   }
+  // What it wants was said before it knew that a thread of its renders what nobody waits for: it says it anew.
+  if (!state.draining && !busy_in_vain) grant(worker, state.wanted, now);
   for (const CompletedTask& task : state.completed) {
     listed.insert(task.lease);
     // Still mine after report(): its blob is missing, and the worker must say it again.

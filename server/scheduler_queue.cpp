@@ -92,8 +92,10 @@ JobRecord* Scheduler::next_job(const std::set<const JobRecord*>& passed_over) co
 void Scheduler::grant(WorkerRecord& worker, uint32_t wanted, const Now& now) {
   if (!worker.set_aside.empty() || now.steady < worker.rest_until) return;
   if (worker.leases.size() >= wanted) return;
+  const uint64_t left = pending();
+  if (left == 0) return;  // at a job's end thousands wait, and ask whenever a result comes
   // Towards the end nobody hoards: what is left is shared by the cores.
-  if (pending() < static_cast<uint64_t>(cores()))
+  if (left < static_cast<uint64_t>(cores()))
     wanted = std::min(wanted, static_cast<uint32_t>(worker.info.cores));
   // Nobody gets a task again that it has failed at, unless there is nobody else left to try.
   const auto refuses = [&](const Blame& blame) {

@@ -139,20 +139,24 @@ bool Agent::sync_once() {
   grpc::ClientContext context;
   context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(kCallSeconds) +
                        std::chrono::milliseconds(state.wait_milliseconds));
-  std::atomic<bool> done{false};
+  bool done = false;
   grpc::Status rpc;
   stub_->async()->Sync(&context, &request, &response, [&](grpc::Status result) {
     rpc = std::move(result);
-    done = true;
-    board_.notify();
+    board_.set(done);
   });
-  // Waits for the answer; news break off a call that is only waiting.
-  while (!done) {
-    const bool news = board_.wait_for_news_or(done, 0.5);
-    if (!done && (stopping_ || (news && state.wait_milliseconds > 0))) {
-      context.TryCancel();
-      while (!done) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
+  // News break off a call that is only waiting; one that reports is over as soon as the server has kept what
+  // it says.
+  constexpr double kLookSeconds = 0.5;
+  const bool waits = state.wait_milliseconds > 0;
+  for (bool over = false; !over;) {
+    const auto woken = waits                                 ? board_.wait_for_news_or(done, kLookSeconds)
+                       : board_.wait_for(done, kLookSeconds) ? TaskBoard::Woken::kDone
+                                                             : TaskBoard::Woken::kTime;
+    over = woken == TaskBoard::Woken::kDone;
+    if (over || (!stopping_ && woken != TaskBoard::Woken::kNews)) continue;
+    context.TryCancel();
+    while (!over) over = board_.wait_for(done, kLookSeconds);
   }
   return take_answer(from_grpc(rpc), response, state);
 }

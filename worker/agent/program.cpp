@@ -133,7 +133,8 @@ absl::Status work(const Options& options, const SceneLoader& loader) {
   ASSIGN_OR_RETURN(const Leaving leaving, leaving_of(options));
   RETURN_IF_ERROR(limit_memory(options.max_memory));
   ASSIGN_OR_RETURN(const std::string folder, cache_folder(options.cache));
-  ASSIGN_OR_RETURN(BlobFolder cache, BlobFolder::open(folder));
+  // What power takes away is fetched again: every file is verified before it is believed (blob_client.h).
+  ASSIGN_OR_RETURN(BlobFolder cache, BlobFolder::open(folder, Durability::kProcessEnd));
   std::optional<Slot> slot;
   AgentOptions agent_options;
   agent_options.threads = options.threads > 0

@@ -79,18 +79,23 @@ bool TaskBoard::full() const {
 }
 
 bool TaskBoard::wait_for_news(double seconds) {
-  static const std::atomic<bool> never{false};
-  return wait_for_news_or(never, seconds);
+  return wait_for_news_or(false, seconds) == Woken::kNews;
 }
 
-bool TaskBoard::wait_for_news_or(const std::atomic<bool>& done, double seconds) {
+TaskBoard::Woken TaskBoard::wait_for_news_or(const bool& done, double seconds) {
   std::unique_lock lock(mutex_);
-  news_cv_.wait_for(lock, std::chrono::duration<double>(seconds), [&] { return news_ || done.load(); });
-  return news_;
+  news_cv_.wait_for(lock, std::chrono::duration<double>(seconds), [&] { return news_ || done; });
+  return done ? Woken::kDone : news_ ? Woken::kNews : Woken::kTime;
 }
 
-void TaskBoard::notify() {
+bool TaskBoard::wait_for(const bool& done, double seconds) {
+  std::unique_lock lock(mutex_);
+  return news_cv_.wait_for(lock, std::chrono::duration<double>(seconds), [&] { return done; });
+}
+
+void TaskBoard::set(bool& done) {
   const std::lock_guard lock(mutex_);
+  done = true;
   news_cv_.notify_all();
 }
 

@@ -44,11 +44,17 @@ class TaskBoard {
   std::vector<std::shared_ptr<Finished>> apply(const DesiredState& desired, const WorkerState& told);
   /// It holds all the leases that it wants; never while it drains.
   bool full() const;
+  /// What ended a wait.
+  enum class Woken { kTime, kNews, kDone };
   /// True if there is something to report that describe() has not seen yet. Blocks up to `seconds`.
   bool wait_for_news(double seconds);
-  /// As wait_for_news(), returning early when `done` is set (under notify()).
-  bool wait_for_news_or(const std::atomic<bool>& done, double seconds);
-  void notify();
+  /// As wait_for_news(), returning early when `done` is set by set().
+  Woken wait_for_news_or(const bool& done, double seconds);
+  /// Until `done` is set by set(), for up to `seconds`; whether it is.
+  bool wait_for(const bool& done, double seconds);
+  /// Whoever waits for `done` sees it under the board's lock, so that board and flag outlive the call that
+  /// sets it.
+  void set(bool& done);
 
   // For the render threads.
 

@@ -1,5 +1,6 @@
 #include "worker/geometry/geometry.h"
 
+#include <atomic>
 #include <chrono>
 #include <mutex>
 #include <new>
@@ -35,7 +36,8 @@ void all_visible(std::span<const LineQuery> queries, std::vector<IntervalSet>& o
 struct Geometry::Parts {
   std::unique_ptr<EmbreeScene> embree;
   LinePath path = widest_line_path();
-  BuildTimes times;
+  double embree_seconds = 0;
+  std::atomic<double> line_bvh_seconds{0};  ///< read while another thread builds
 
   /// The line hierarchy, built at the first call: a job without lines does not pay for it.
   const LineBvh& lines() {
@@ -63,7 +65,7 @@ void Geometry::Parts::build_lines() {
   if (!built.ok()) throw std::bad_alloc();
   line_bvh = *std::move(built);
   meshes = {}, objects = {}, instances = {};
-  times.line_bvh_seconds = seconds_since(start);
+  line_bvh_seconds = seconds_since(start);
 }
 
 Geometry::Geometry() : parts_(std::make_unique<Parts>()) {}
@@ -80,7 +82,7 @@ absl::StatusOr<Geometry> Geometry::build(std::span<const MeshInput> meshes,
   Parts& parts = *geometry.parts_;
   const auto start = std::chrono::steady_clock::now();
   ASSIGN_OR_RETURN(parts.embree, EmbreeScene::build(meshes, objects, instances, threads));
-  parts.times.embree_seconds = seconds_since(start);
+  parts.embree_seconds = seconds_since(start);
   parts.meshes.assign(meshes.begin(), meshes.end());
   parts.objects.assign(objects.begin(), objects.end());
   parts.instances.assign(instances.begin(), instances.end());
@@ -185,7 +187,7 @@ void Geometry::nearest(const RayInTime& ray, std::vector<SeenInterval>& out, Que
 }
 
 Geometry::BuildTimes Geometry::build_times() const {
-  return parts_->times;
+  return {parts_->embree_seconds, parts_->line_bvh_seconds};
 }
 
 double Geometry::line_bytes_per_triangle() const {

@@ -98,6 +98,7 @@ std::string Cluster::server_log() const {
 void Cluster::start_server() {
   const std::string file = path("address");
   std::filesystem::remove(file);
+  if (address_.empty()) address_ = listen_host + ":0";
   std::vector<std::string> command = server_prefix;
   for (const std::string& word : {std::string(PENUMBRA_SERVER), std::string("--listen"), address_,
                                   std::string("--store"), path("store"), std::string("--address-file"), file})

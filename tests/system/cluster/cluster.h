@@ -48,6 +48,7 @@ class Cluster {
   // further flags.
   std::vector<std::string> server_prefix, server_flags, worker_prefix, worker_flags;
   Credentials credentials;  ///< of the calls made by this object
+  std::string listen_host = "127.0.0.1";
 
   /// Starts a server on a free port (or again on the same) and connects.
   void start_server();
@@ -82,7 +83,7 @@ class Cluster {
 
  private:
   std::filesystem::path root_;
-  std::string address_ = "127.0.0.1:0";
+  std::string address_;
   std::unique_ptr<Process> server_;
   std::vector<std::unique_ptr<Process>> workers_;
   std::unique_ptr<v1::Render::Stub> render_;

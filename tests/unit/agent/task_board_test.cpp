@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <thread>
 
 #include "worker/agent/flags.h"
@@ -51,6 +52,21 @@ TEST(TaskBoard, TasksGoFromLeaseToAcknowledgement) {
   acknowledged.acknowledged = {id};
   board.apply(acknowledged, told(board));
   EXPECT_TRUE(board.empty());
+}
+
+// A call that reports cannot be hurried: news must not wake whoever waits for its end, again and again.
+TEST(TaskBoard, NewsDoNotEndAWaitForTheAnswer) {
+  TaskBoard board(1);  // a new one has news
+  bool done = false;
+  EXPECT_EQ(board.wait_for_news_or(done, 60), TaskBoard::Woken::kNews);
+  constexpr double kSeconds = 0.05;
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_FALSE(board.wait_for(done, kSeconds));
+  EXPECT_GE(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), kSeconds);
+  std::thread caller([&] { board.set(done); });
+  EXPECT_TRUE(board.wait_for(done, 60));
+  caller.join();
+  EXPECT_EQ(board.wait_for_news_or(done, 60), TaskBoard::Woken::kDone);
 }
 
 TEST(TaskBoard, WhatIsNoLongerDesiredIsCancelled) {

@@ -129,6 +129,23 @@ TEST_F(SchedulerTest, CancellingTakesTheTasksAway) {
   EXPECT_TRUE(absl::IsNotFound(scheduler_.cancel("other", now_)));
 }
 
+// It says how many tasks it wants before it knows that its thread renders what nobody waits for any more.
+TEST_F(SchedulerTest, AWorkerThatLosesWhatItRendersIsGivenNothingInTheSameBreath) {
+  const JobId job = submit();
+  WorkerState a = worker("a", "0");
+  sync(a);
+  ASSERT_EQ(a.held.size(), 1u);
+  ASSERT_TRUE(scheduler_.cancel(job, now_).ok());
+  scheduler_.submit("j2", "other", spec_of(SppBudget{4}), now_);
+  a.held[0].begun = true;
+  const SyncAnswer told = scheduler_.answer(a, now_);
+  EXPECT_TRUE(told.urgent);
+  EXPECT_TRUE(told.desired.leases.empty());
+  // What it has not begun it forgets at once.
+  a.held[0].begun = false;
+  EXPECT_EQ(scheduler_.answer(a, now_).desired.leases.size(), 1u);
+}
+
 TEST_F(SchedulerTest, TheSameRequestIsTheSameJob) {
   const JobId job = submit();
   EXPECT_EQ(scheduler_.submit("j2", "request", spec_of(SppBudget{4}), now_), job);

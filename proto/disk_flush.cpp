@@ -1,0 +1,81 @@
+#include "proto/disk_flush.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "proto/status.h"
+
+namespace penumbra {
+namespace {
+
+absl::Status failed(std::string_view what, const std::string& path) {
+  const int error = errno;
+  const auto code = error == ENOENT                      ? absl::StatusCode::kNotFound
+                    : error == ENOSPC || error == EDQUOT ? absl::StatusCode::kResourceExhausted
+                                                         : absl::StatusCode::kInternal;
+  return make_status(code, "{} {}: {}", what, path, std::strerror(error));
+}
+
+absl::Status flush_path(const std::string& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return failed("opening", path);
+  const absl::Status status = ::fsync(file) == 0 ? absl::OkStatus() : failed("flushing", path);
+  ::close(file);
+  return status;
+}
+
+}  // namespace
+
+absl::StatusOr<std::shared_ptr<DiskFlush>> DiskFlush::open(const std::string& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return failed("opening", folder);
+  return std::shared_ptr<DiskFlush>(new DiskFlush(folder, descriptor));
+}
+
+DiskFlush::~DiskFlush() {
+  ::close(descriptor_);
+}
+
+absl::Status DiskFlush::flush_all() const {
+  return ::syncfs(descriptor_) == 0 ? absl::OkStatus() : failed("flushing the disk of", folder_);
+}
+
+absl::Status DiskFlush::flush(int file, const std::string& path) {
+  std::unique_lock lock(mutex_);
+  if (!next_) next_ = std::make_shared<Round>();
+  const std::shared_ptr<Round> mine = next_;
+  ++mine->waiting;
+  over_.wait(lock, [&] { return mine->over || !busy_; });
+  if (mine->over) return mine->status;
+  busy_ = true;  // the first to see it flushes for all who have come meanwhile
+  next_ = nullptr;
+  const bool alone = mine->waiting == 1;
+  lock.unlock();
+  const absl::Status status = !alone               ? flush_all()
+                              : ::fsync(file) == 0 ? absl::OkStatus()
+                                                   : failed("flushing", path);
+  lock.lock();
+  mine->status = status;
+  mine->over = true;
+  busy_ = false;
+  over_.notify_all();
+  return status;
+}
+
+absl::Status DiskFlush::flush(const std::vector<std::string>& files) {
+  // The file, then its name: two flushes of the disk, where everything at once is one.
+  for (const std::string& path : files)
+    if (::access(path.c_str(), F_OK) != 0) return failed("flushing", path);
+  if (files.size() > 1) return flush_all();
+  for (const std::string& path : files) {
+    RETURN_IF_ERROR(flush_path(path));
+    RETURN_IF_ERROR(flush_path(std::filesystem::path(path).parent_path()));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace penumbra
