@@ -63,6 +63,19 @@ TEST(CandidatePilot, MediumLinesAreTriedWhereMediaAndALightServeThem) {
   EXPECT_FALSE(tried(foggy("LightSource \"distant\" \"point3 from\" [ 0 3 0 ] \"point3 to\" [ 0 0 0 ]")));
 }
 
+TEST(CandidatePilot, SaysWhereLobesMayBeNarrow) {
+  const std::vector<std::string> names = {"sa:4"};
+  std::string text = kSmallLamp;
+  const ScenePtr matte = test::load_text(text);
+  text.replace(text.find("\"matte\""), 7, "\"plastic\"");
+  const ScenePtr plastic = test::load_text(text);
+  ASSERT_TRUE(matte && plastic);
+  EXPECT_EQ(pilot(*matte, names)[0].lobed_pixels, 0);
+  const MixCost cost = pilot(*plastic, names)[0];
+  EXPECT_GT(cost.lobed_pixels, 0);
+  EXPECT_LE(cost.lobed_pixels, cost.pixels);
+}
+
 TEST(CandidatePilot, AMixThatHasMissedTheLightIsNotWithoutNoise) {
   const ScenePtr scene = test::load_text(kSmallLamp);
   ASSERT_TRUE(scene);
