@@ -101,11 +101,18 @@ absl::Status broken(const PlyElement& element, uint64_t row) {
                        row, element.count);
 }
 
+/// Whether a list of so many items may follow: an item has a byte at least. A count in text is any number,
+/// and one beyond an integer's range must not become an integer.
+template <class Cursor>
+bool may_follow(Cursor& cursor, double count) {
+  return count >= 0 && count <= static_cast<double>(cursor.rest());
+}
+
 template <class Cursor>
 bool skip_property(Cursor& cursor, const PlyProperty& property) {
   if (!property.is_list) return cursor.skip(property.type, 1);
   double count = 0;
-  return cursor.read(property.count_type, count) && count >= 0 &&
+  return cursor.read(property.count_type, count) && may_follow(cursor, count) &&
          cursor.skip(property.type, static_cast<uint64_t>(count));
 }
 
@@ -171,6 +178,7 @@ absl::Status read_face(Cursor& cursor, const PlyElement& element, const PlyPrope
   double count = 0;
   if (!cursor.read(list.count_type, count)) return broken(element, row);
   if (count < 0) return invalid_input("face {} of the PLY file has {} vertices", row, count);
+  if (!may_follow(cursor, count)) return broken(element, row);
   uint32_t first = 0, last = 0;
   for (uint64_t k = 0; k < static_cast<uint64_t>(count); ++k) {
     double value = 0;
