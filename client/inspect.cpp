@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -32,9 +33,9 @@ struct InspectOptions {
   ClusterOptions cluster;
 };
 
-/// What a scene holds. Lights: every light of the text; of area lights one for each quad, sphere, disk and
-/// cylinder, and one for each triangle of a mesh, because that is what is sampled. Triangles: as stored,
-/// those of an instanced object once.
+/// What a scene holds. Lights: those of the text that are rendered; of area lights one for each quad, sphere,
+/// disk and cylinder, and one for each triangle of a mesh, because that is what is sampled. Triangles: as
+/// stored, those of an instanced object once.
 struct Counts {
   int64_t lights = 0, triangles = 0, materials = 0, shapes = 0, instances = 0, curves = 0;
 };
@@ -65,7 +66,7 @@ absl::Status count_shape(const ShapeEntity& shape, const SceneDescription& scene
 absl::StatusOr<Counts> count(const SceneDescription& scene, const SceneFiles& files,
                              std::vector<std::string>& warnings) {
   Counts counts;
-  counts.lights = static_cast<int64_t>(scene.lights.size());
+  counts.lights = std::count_if(scene.lights.begin(), scene.lights.end(), is_rendered);
   counts.materials = static_cast<int64_t>(scene.materials.size());
   counts.instances = static_cast<int64_t>(scene.instances.size());
   for (const ShapeEntity& shape : scene.shapes)

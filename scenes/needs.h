@@ -16,6 +16,9 @@ std::vector<Need> needs_of(const SceneDescription& description);
 /// Whether the material may have a specular lobe: what calls for the effect `specular`.
 bool is_specular(const MaterialEntity& material);
 
+/// Of pbrt's lights some are left out (goniometric, projection).
+bool is_rendered(const LightEntity& light);
+
 /// `place: …` for everything that is read but not rendered, one line per kind: shapes and lights that are
 /// left out, cameras and integrators that something simpler stands in for, effects to come. Materials and
 /// textures are not among them: who substitutes them says so.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <map>
 
 #include "proto/status.h"
@@ -47,6 +48,15 @@ void add_entities(const SceneDescription& scene, std::vector<std::string>& out) 
         fmt::format("integrator '{}' is not supported: direct light instead", scene.integrator.type));
 }
 
+/// Does a light that is rendered, or a shape, shine?
+bool has_light(const SceneDescription& scene) {
+  bool emits = std::any_of(scene.lights.begin(), scene.lights.end(), is_rendered);
+  each_shape(scene, [&emits](const ShapeEntity& shape) {
+    emits |= shape.area_light >= 0 && support_of(PluginKind::kShape, shape.type) != Support::kSubstituted;
+  });
+  return emits;
+}
+
 void add_left_out(const SceneDescription& scene, std::vector<std::string>& out) {
   std::map<std::string, Tally> shapes, lights;
   each_shape(scene, [&shapes](const ShapeEntity& shape) {
@@ -54,12 +64,14 @@ void add_left_out(const SceneDescription& scene, std::vector<std::string>& out) 
       shapes[shape.type].add(shape.loc);
   });
   for (const LightEntity& light : scene.lights)
-    if (support_of(PluginKind::kLight, light.type) == Support::kSubstituted)
-      lights[light.type].add(light.loc);
+    if (!is_rendered(light)) lights[light.type].add(light.loc);
   for (const auto& [noun, tallies] : {std::pair("shape", &shapes), {"light", &lights}})
     for (const auto& [type, tally] : *tallies)
       out.push_back(fmt::format("{}: {} '{}' is not supported: {} left out", scene.place(tally.first), noun,
                                 type, tally.count));
+  if (!lights.empty() && !has_light(scene))
+    out.push_back(
+        fmt::format("{}: no light is left: the picture is black", scene.place(lights.begin()->second.first)));
 }
 
 /// An effect in worker/effects, or one that is to come there.
@@ -84,6 +96,10 @@ void add_effects(const SceneDescription& scene, std::vector<std::string>& out) {
 }
 
 }  // namespace
+
+bool is_rendered(const LightEntity& light) {
+  return support_of(PluginKind::kLight, light.type) != Support::kSubstituted;
+}
 
 std::vector<std::string> unsupported(const SceneDescription& description) {
   std::vector<std::string> out;

@@ -107,6 +107,18 @@ TEST(Unsupported, NamesWhatIsLeftOutOnce) {
                   HasSubstr("shape 'cone' is not supported: 2 left out"), HasSubstr("light 'goniometric'")));
 }
 
+TEST(Unsupported, APictureWithoutItsOnlyLightIsSaidToBeBlack) {
+  const std::string_view dark = "WorldBegin LightSource \"projection\" Shape \"sphere\"";
+  EXPECT_THAT(unsupported(parsed(dark)), ElementsAre(HasSubstr("light 'projection'"),
+                                                     HasSubstr("no light is left: the picture is black")));
+  for (const std::string_view light :
+       {"LightSource \"point\"", "AreaLightSource \"diffuse\" Shape \"sphere\""})
+    EXPECT_THAT(unsupported(parsed(fmt::format("{} {}", dark, light))),
+                ElementsAre(HasSubstr("light 'projection'")))
+        << light;
+  EXPECT_FALSE(is_rendered(parsed(dark).lights[0]));
+}
+
 TEST(Unsupported, DirectLightIsSupported) {
   EXPECT_THAT(unsupported(parsed("Integrator \"path\" \"integer maxdepth\" 1 WorldBegin")), IsEmpty());
   EXPECT_THAT(unsupported(parsed("Integrator \"directlighting\" WorldBegin")), IsEmpty());
