@@ -9,7 +9,7 @@
 namespace penumbra {
 
 /// What `auto` chooses from, in the order of their numbers. A pilot leaves out those that a scene has no use
-/// for: lines where no light serves them, medium=line without media that a light at hand shines into. Lines
+/// for: lines where no light serves them, medium=line without media and a light at hand. Lines
 /// of the lens and of time are none of them: what they cost is more than they bring
 /// (worker/effects/README.md).
 const std::vector<Mix>& auto_candidates();

@@ -70,8 +70,8 @@ absl::StatusOr<std::shared_ptr<grpc::Channel>> open_channel(const std::string& a
                                                             const Credentials& credentials) {
   if (address.rfind(':') == std::string::npos)
     return invalid_input("--server: '{}' is not of the form HOST:PORT", address);
-  ASSIGN_OR_RETURN(const auto security, channel_credentials(credentials));
   ignore_lock_order();
+  ASSIGN_OR_RETURN(const auto security, channel_credentials(credentials));
   grpc::ChannelArguments arguments;
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 50);
   arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 2000);

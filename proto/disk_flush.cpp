@@ -30,18 +30,20 @@ absl::Status flush_path(const std::string& path) {
 
 }  // namespace
 
-absl::StatusOr<std::shared_ptr<DiskFlush>> DiskFlush::open(const std::string& folder) {
+absl::StatusOr<std::shared_ptr<DiskFlush>> DiskFlush::open(const std::string& folder, int (*syncfs)(int)) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return failed("opening", folder);
-  return std::shared_ptr<DiskFlush>(new DiskFlush(folder, descriptor));
+  return std::shared_ptr<DiskFlush>(new DiskFlush(folder, descriptor, syncfs != nullptr ? syncfs : ::syncfs));
 }
 
 DiskFlush::~DiskFlush() {
   ::close(descriptor_);
 }
 
-absl::Status DiskFlush::flush_all() const {
-  return ::syncfs(descriptor_) == 0 ? absl::OkStatus() : failed("flushing the disk of", folder_);
+absl::Status DiskFlush::flush_all() {
+  const std::lock_guard lock(disk_);
+  if (failure_.ok() && syncfs_(descriptor_) != 0) failure_ = failed("flushing the disk of", folder_);
+  return failure_;
 }
 
 absl::Status DiskFlush::flush(int file, const std::string& path) {

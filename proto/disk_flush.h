@@ -17,7 +17,9 @@ namespace penumbra {
 class DiskFlush {
  public:
   /// Keeps the folder open: the kernel tells an open file of every failed write since (syncfs(2)).
-  static absl::StatusOr<std::shared_ptr<DiskFlush>> open(const std::string& folder);
+  /// `syncfs`: the system's, but for tests.
+  static absl::StatusOr<std::shared_ptr<DiskFlush>> open(const std::string& folder,
+                                                         int (*syncfs)(int) = nullptr);
   ~DiskFlush();
   DiskFlush(const DiskFlush&) = delete;
   DiskFlush& operator=(const DiskFlush&) = delete;
@@ -28,10 +30,12 @@ class DiskFlush {
   absl::Status flush(const std::vector<std::string>& files);
 
  private:
-  explicit DiskFlush(std::string folder, int descriptor)
-      : folder_(std::move(folder)), descriptor_(descriptor) {}
-  /// Everything that was written to the file system before the call.
-  absl::Status flush_all() const;
+  DiskFlush(std::string folder, int descriptor, int (*syncfs)(int))
+      : folder_(std::move(folder)), descriptor_(descriptor), syncfs_(syncfs) {}
+  /// Everything that was written to the file system before the call. The kernel tells of a failed write once,
+  /// to whoever asks first: so a failure is kept, and all later calls fail as well, until the program is
+  /// started anew and looks at what the disk has.
+  absl::Status flush_all();
 
   /// Threads that wait for the same flush.
   struct Round {
@@ -42,6 +46,9 @@ class DiskFlush {
 
   std::string folder_;
   int descriptor_;
+  int (*syncfs_)(int);
+  std::mutex disk_;       // one flush of everything at a time
+  absl::Status failure_;  // guarded by disk_
   std::mutex mutex_;
   std::condition_variable over_;
   bool busy_ = false;  // guarded by mutex_

@@ -226,7 +226,7 @@ struct MixCost {
   int64_t pixels = 0;  ///< measured; `passes` is then the number of passes in each
   /// Sum over the measured pixels of the square of their part of relative_variance: how sure that is.
   double relative_variance_squares = 0;
-  int64_t lobed_pixels = 0;  ///< of them, those in which a material may have narrow lobes
+  int64_t lobed_pixels = 0;  ///< of them, those in which something scatters light into a narrow lobe
   /// Work counted in rays, line queries and their steps, in units of about a nanosecond; the same on every
   /// machine with this instruction set.
   double work = 0;

@@ -33,9 +33,10 @@ inline int chords_of(const CurvePiece& p, double tolerance) {
 /// twisted surface by less than a hundredth of its width (1 - cos and half the bulge of a bilinear patch).
 constexpr double kMostTurn = 0.125;
 
-/// At least `chords`, and as many more as it takes that a chord longer than `shortest` turns by kMostTurn at
-/// most. With the shortest a tenth of the width that is none where the bends are fifty times wider than the
-/// curve, as in hair, and no more than eight times as many at a bend as narrow as the curve.
+/// At least `chords`, and as many more as it takes that the tangents at a chord's ends, if it is longer than
+/// `shortest`, differ by kMostTurn at most. With the shortest a tenth of the width that is none where the
+/// bends are fifty times wider than the curve, as in hair, and no more than eight times as many at a bend as
+/// narrow as the curve.
 inline int chords_for_turn(const CurvePiece& p, int chords, double shortest) {
   for (;;) {
     double most = 0;

@@ -14,7 +14,7 @@ struct HairNumber {
   float least, most;  ///< both inclusive
 };
 
-/// Chiang, Bitterli, Tappan & Burley 2016: roughnesses in [0,1]; the scales' angle in degrees, less than a
+/// Chiang, Bitterli, Tappan & Burley 2016: roughnesses in [0,1]; the scales' angle in degrees, at most a
 /// right one; pigments as concentrations; a fibre is not thinner, optically, than the air around it.
 std::span<const HairNumber> hair_numbers();
 

@@ -18,10 +18,11 @@ namespace {
 constexpr double kBlockPixels = 4 * 2, kBlockSamples = kBlockPixels * 4;
 // Pixels beyond this share of a tile would tell little more than their neighbours did.
 constexpr double kMostBlockShare = 0.25;
-// A pilot of counted work may take this share of the run's passes.
+// A pilot of counted work may take this share of the run's passes; a little more where a scene's media make
+// it try more candidates than others have.
 constexpr double kPilotShare = 0.08;
-// A mix without `bsdf` has no bound on f / p where a lobe is narrow. A tile in which a material may have such
-// lobes, or that has one beside it, takes no such mix, whatever its few pixels say: in the kitchen a shiny
+// A mix without `bsdf` has no bound on f / p where a lobe is narrow (worker/materials/scattering.h). A tile
+// with such a lobe, or beside one, takes no such mix, whatever its few pixels say: in the kitchen a shiny
 // table went to `sa:4` by its pilot, and a dozen of its pixels were then a tenth of the image's error.
 // Elsewhere the pilot may not have met the lobe: the image's part of the mix's ratio counts as so much worse
 // until the tile's own pixels outweigh it.
@@ -95,7 +96,8 @@ size_t best_of(const Measurements& m, const std::vector<double>& variance, const
     const double a = variance[k] * cost[k], b = best ? variance[*best] * cost[*best] : 0;
     if (!best || a < b || (a == b && cost[k] < cost[*best])) best = k;
   }
-  return best.value_or(0);
+  // A pilot that has measured no bounded mix leaves no choice.
+  return best ? *best : best_of(m, variance, cost, true);
 }
 
 std::vector<Choice> choices(const std::vector<PixelRect>& tiles, const Measurements& m) {

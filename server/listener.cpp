@@ -117,8 +117,8 @@ absl::StatusOr<Listener> listen(const ListenOptions& options, const std::vector<
   const size_t colon = address.rfind(':');
   if (colon == std::string::npos || colon == 0)
     return invalid_input("--listen: '{}' is not of the form HOST:PORT", address);
-  ASSIGN_OR_RETURN(const auto security, server_credentials(options));
   ignore_lock_order();
+  ASSIGN_OR_RETURN(const auto security, server_credentials(options));
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;

@@ -32,6 +32,11 @@ class PhaseScattering final : public Scattering {
     const double p = phase(hg_, wo, wi);
     return BsdfSample{wi, Rgb(float(p)), p};
   }
+  /// At its peak the phase function is (1+|g|)/(1-|g|)² times the isotropic one.
+  bool has_narrow_lobe() const override {
+    const double g = std::abs(hg_.g);
+    return 1 + g > kNarrowPeak * (1 - g) * (1 - g);
+  }
 
  private:
   HenyeyGreenstein hg_;

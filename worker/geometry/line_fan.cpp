@@ -83,7 +83,8 @@ End end_of(const LineFan& fan, const Crossing& e, const Vec3d& q, const Vec3d& q
   if (behind(fan, e)) return {0, true, false};
   const double g = std::abs(fan.g_exact.dot(q)), g_odd = std::abs(fan.g_exact.dot(q_odd));
   const double t = g * fan.t_exact.dot(q_odd) + g_odd * fan.t_exact.dot(q);
-  // What is clearly in front to single precision stays so: an edge in the fan's plane has no t in double.
+  // What is clearly in front to single precision stays so: an edge in the fan's plane has no t in double. It
+  // counts as beyond the light then, and its end stays between the two that single precision knows.
   if (!front && !(t > 0)) return {0, true, false};
   const double beta = g * fan.beta_exact.dot(q_odd) + g_odd * fan.beta_exact.dot(q);
   return {front ? e.beta / e.t : static_cast<float>(beta / t), false, t >= fan.light * (g + g_odd)};

@@ -22,6 +22,15 @@ bool is_lambertian(const Lobe& lobe) {
   return std::visit([](const auto& kind) { return kLambertian<decltype(kind)>; }, lobe);
 }
 
+/// Facets reflect at most 1/(4π αx αy) of what comes along the normal into a steradian, where a Lambertian
+/// surface has 1/π.
+template <class L>
+bool is_narrow(const L& lobe) {
+  if constexpr (requires { lobe.facets; })
+    return 4 * lobe.facets.alpha_x * lobe.facets.alpha_y * kNarrowPeak < 1;
+  return kFibre<L>;
+}
+
 }  // namespace
 
 /// A pair of directions in the shading frame, and where they lie about the geometric surface.
@@ -60,7 +69,7 @@ void Bsdf::add(const Lobe& lobe, const Rgb& scale) {
         using L = std::decay_t<decltype(kind)>;
         transmits_ |= L::kTransmits && !L::kSpecular;
         specular_ += L::kSpecular;
-        lobed_ |= kSmooth<L> && !kLambertian<L> && !std::is_same_v<L, OrenNayar>;
+        narrow_ |= is_narrow(kind);
         // Equal shares but for the scale, as in pbrt: a glossy lobe needs its samples more than its albedo
         // says, because light sampling serves it worst.
         lobes_[count_] = {lobe, scale, L::kSpecular ? 0 : share};

@@ -40,8 +40,7 @@ class Bsdf final : public Scattering {
   std::optional<BsdfSample> sample_specular(const Vec3f& wo, int index) const;
 
   bool has_non_specular() const { return count_ > specular_; }
-  /// Has it lobes that may be narrow? Then f over the density of a light sample has no bound to count on.
-  bool has_lobes() const { return lobed_; }
+  bool has_narrow_lobe() const override { return narrow_; }
   /// May light from below the geometric horizon matter? Then lines must not be clipped to it.
   bool transmits() const { return transmits_; }
   const Vec3f& ns() const { return ns_; }
@@ -66,7 +65,7 @@ class Bsdf final : public Scattering {
   std::array<Weighted, kMostLobes> lobes_;
   int count_ = 0, specular_ = 0;
   float total_weight_ = 0;
-  bool transmits_ = false, lobed_ = false;
+  bool transmits_ = false, narrow_ = false;
 };
 
 }  // namespace penumbra

@@ -23,6 +23,11 @@ class Scattering {
   virtual double pdf(const Vec3f& wo, const Vec3f& wi) const = 0;
   /// A direction in proportion to what is scattered; empty if the sample failed.
   virtual std::optional<BsdfSample> sample(const Vec3f& wo, const Vec2d& u, double choice) const = 0;
+  /// Has it a lobe whose peak is more than kNarrowPeak times what an even one is everywhere? A few samples of
+  /// a light then cannot tell how bright its rare bright ones are.
+  virtual bool has_narrow_lobe() const = 0;
 };
+
+constexpr double kNarrowPeak = 10;
 
 }  // namespace penumbra

@@ -67,9 +67,9 @@ class CandidateRun {
     for (int y = block.y0; y < block.y1; ++y)
       for (int x = block.x0; x < block.x1; ++x, ++pixel) {
         PixelSums sums;
-        const uint64_t lobed = sampler_.lobed_vertices();
+        const uint64_t lobed = sampler_.narrow_vertices();
         for (int pass = 0; pass < kPasses; ++pass) add(sums, sampler_.sample(x, y, pass));
-        cost.lobed_pixels += sampler_.lobed_vertices() != lobed;
+        cost.lobed_pixels += sampler_.narrow_vertices() != lobed;
         sums_[pixel] = sums;
       }
     cost.pixels += block.area();

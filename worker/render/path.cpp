@@ -50,7 +50,7 @@ Rgb PathTracer::radiance(const CameraRay& camera_ray, const PassSampler& sampler
     const Bsdf bsdf = scene_.materials.shade(scene_.meshes[hit->id.mesh].material, surface, scene_.textures);
     const ShadingPoint point(surface, bsdf);
     if (walk_) walk_->stand_on(hit->id.mesh, surface.ng);
-    lobed_vertices_ += bsdf.has_lobes();
+    narrow_vertices_ += bsdf.has_narrow_lobe();
     if (bsdf.has_non_specular()) sum += throughput * direct_.estimate(point, sampler, depth);
     if (depth + 1 >= max_depth_ || bsdf.specular_count() == 0) return sum;
     Vec3f direction;
@@ -119,6 +119,7 @@ Rgb PathTracer::lit(const std::vector<ScatterVertex>& vertices, const Ray& ray, 
   for (const ScatterVertex& vertex : vertices) {
     walk_->stand_in(vertex.medium);
     const ShadingPoint point(vertex.p, -ray.direction, *vertex.phase, ray.time);
+    narrow_vertices_ += vertex.phase->has_narrow_lobe();
     if (arrivals_)
       arrivals_->stand_at(length_ + (Vec3d(vertex.p) - Vec3d(ray.origin)).length(),
                           throughput_ * vertex.weight);

@@ -27,8 +27,8 @@ class PathTracer {
   Rgb radiance(const CameraRay& ray, const PassSampler& sampler, bool emission = true);
   /// What radiance() leaves out then.
   Rgb emission(const CameraRay& ray);
-  /// Vertices so far whose material may have narrow lobes.
-  uint64_t lobed_vertices() const { return lobed_vertices_; }
+  /// Vertices so far, in media as well, that scatter light into narrow lobes.
+  uint64_t narrow_vertices() const { return narrow_vertices_; }
 
  private:
   Rgb emitted(const Hit& hit, const Ray& ray);
@@ -55,7 +55,7 @@ class PathTracer {
   DirectLight direct_;
   int max_depth_;
   QueryCounters& counters_;
-  uint64_t lobed_vertices_ = 0;
+  uint64_t narrow_vertices_ = 0;
   std::vector<ScatterVertex> vertices_, far_vertices_;
   std::optional<MediumLines> lines_;
 };

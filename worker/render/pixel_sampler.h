@@ -66,7 +66,7 @@ class PixelSampler {
 
   QueryCounters& counters() { return counters_; }
   /// Of all samples so far: see PathTracer.
-  uint64_t lobed_vertices() const { return tracer_.lobed_vertices(); }
+  uint64_t narrow_vertices() const { return tracer_.narrow_vertices(); }
   /// Where the last sample's light went by the length of its path; null: nobody asks.
   TimeBins* bins() { return bins_.get(); }
 

@@ -1,7 +1,7 @@
 // Preloaded into a program under test: its wall clock is off by the seconds that a file says at that moment.
 // Its steady clock is left alone, as a real jump leaves it; the kernel's is not moved, so a wait until some
 // wall clock time is told to the kernel in its own: else every wait of gRPC's would be over at once, or last
-// for days.
+// for days. Waits that have begun before a jump do not feel it, as they would feel a real one.
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <linux/futex.h>

@@ -38,8 +38,7 @@ std::string TwoNetworks::make() {
       fmt::format("ip -n {} link set lo up", name_),
       fmt::format("ip -n {} link set far up", name_),
   };
-  for (const std::string& command : commands)
-    if (!run(command)) return "no cable between two networks: " + command;
+  for (const std::string& command : commands) EXPECT_TRUE(run(command)) << command;
   return "";
 }
 

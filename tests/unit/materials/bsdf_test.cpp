@@ -106,16 +106,18 @@ TEST(Bsdf, EqualIndicesGoStraightOn) {
   EXPECT_NEAR(sample->f.x * std::abs(sample->wi.z), 0.25, 1e-6);
 }
 
-TEST(Bsdf, KnowsWhetherLobesMayBeNarrow) {
+TEST(Bsdf, KnowsWhetherALobeIsNarrow) {
   Bsdf bsdf(flat_point(), kUp);
   bsdf.add(Lambert{Rgb(0.5f)});
   bsdf.add(oren_nayar(Rgb(0.5f), 20));
   bsdf.add(SpecularReflection{Rgb(1), FresnelDielectric{1, 1.5}});
-  EXPECT_FALSE(bsdf.has_lobes()) << "a mirror takes no light samples";
-  bsdf.add(MicrofacetReflection{Rgb(1), {0.3, 0.3}, FresnelDielectric{1, 1.5}}, Rgb(0));
-  EXPECT_FALSE(bsdf.has_lobes()) << "a black lobe is none";
-  bsdf.add(MicrofacetReflection{Rgb(1), {0.3, 0.3}, FresnelDielectric{1, 1.5}});
-  EXPECT_TRUE(bsdf.has_lobes());
+  EXPECT_FALSE(bsdf.has_narrow_lobe()) << "a mirror takes no light samples";
+  bsdf.add(MicrofacetReflection{Rgb(1), {0.16, 0.16}, FresnelDielectric{1, 1.5}});
+  EXPECT_FALSE(bsdf.has_narrow_lobe()) << "its peak is 9.8 times a Lambertian surface's";
+  bsdf.add(MicrofacetReflection{Rgb(1), {0.05, 0.05}, FresnelDielectric{1, 1.5}}, Rgb(0));
+  EXPECT_FALSE(bsdf.has_narrow_lobe()) << "a black lobe is none";
+  bsdf.add(MicrofacetReflection{Rgb(1), {0.15, 0.15}, FresnelDielectric{1, 1.5}});
+  EXPECT_TRUE(bsdf.has_narrow_lobe());
 }
 
 TEST(Bsdf, ScaleMultipliesAndBlackAddsNothing) {

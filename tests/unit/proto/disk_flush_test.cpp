@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -44,6 +45,28 @@ TEST_F(DiskFlushTest, AFileThatIsNotThereIsNamed) {
     EXPECT_NE(status.message().find("gone"), std::string_view::npos) << status;
   }
   EXPECT_FALSE(DiskFlush::open(folder_ + "/gone").ok());
+}
+
+int flushes = 0, fails = 0;
+int counted(int) {
+  ++flushes;
+  if (fails == 0) return 0;
+  --fails;
+  errno = EIO;
+  return -1;
+}
+
+// The kernel tells of a failed write once only; whoever asks next must not take what was lost for kept.
+TEST_F(DiskFlushTest, AFailureIsToldToAllWhoAskLater) {
+  const auto flush = DiskFlush::open(folder_, counted).value();
+  const std::vector<std::string> files = {file("a"), file("b")};
+  flushes = 0, fails = 0;
+  EXPECT_TRUE(flush->flush(files).ok());
+  EXPECT_EQ(flushes, 1) << "both together";
+  fails = 1;
+  EXPECT_FALSE(flush->flush(files).ok());
+  EXPECT_FALSE(flush->flush(files).ok());
+  EXPECT_EQ(flushes, 2) << "a disk that has lost something is not asked again";
 }
 
 TEST_F(DiskFlushTest, WhoeverWaitsTogetherIsAnswered) {
