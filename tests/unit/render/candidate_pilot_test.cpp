@@ -63,17 +63,29 @@ TEST(CandidatePilot, MediumLinesAreTriedWhereMediaAndALightServeThem) {
   EXPECT_FALSE(tried(foggy("LightSource \"distant\" \"point3 from\" [ 0 3 0 ] \"point3 to\" [ 0 0 0 ]")));
 }
 
-TEST(CandidatePilot, SaysWhereLobesMayBeNarrow) {
-  const std::vector<std::string> names = {"sa:4"};
-  std::string text = kSmallLamp;
-  const ScenePtr matte = test::load_text(text);
-  text.replace(text.find("\"matte\""), 7, "\"plastic\"");
-  const ScenePtr plastic = test::load_text(text);
-  ASSERT_TRUE(matte && plastic);
-  EXPECT_EQ(pilot(*matte, names)[0].lobed_pixels, 0);
-  const MixCost cost = pilot(*plastic, names)[0];
-  EXPECT_GT(cost.lobed_pixels, 0);
-  EXPECT_LE(cost.lobed_pixels, cost.pixels);
+TEST(CandidatePilot, SaysWhereALobeIsNarrow) {
+  const auto measured = [](const std::string& material) {
+    std::string text = kSmallLamp;
+    text.replace(text.find("\"matte\""), 7, material);
+    const ScenePtr scene = test::load_text(text);
+    EXPECT_TRUE(scene);
+    return pilot(*scene, {"sa:4"})[0];
+  };
+  EXPECT_EQ(measured("\"matte\"").lobed_pixels, 0);
+  EXPECT_EQ(measured("\"plastic\" \"float roughness\" 0.5").lobed_pixels, 0);
+  const MixCost shiny = measured("\"plastic\" \"float roughness\" 0.001");
+  EXPECT_GT(shiny.lobed_pixels, 0);
+  EXPECT_LE(shiny.lobed_pixels, shiny.pixels);
+  const auto in_fog = [](const std::string& g) {
+    const ScenePtr scene =
+        test::load_text(R"(MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_s" [ 1 1 1 ]
+  "rgb sigma_a" [ 0 0 0 ] "float g" )" +
+                        g + "\nMediumInterface \"\" \"fog\"\n" + kSmallLamp);
+    EXPECT_TRUE(scene);
+    return pilot(*scene, {"sa:4"})[0].lobed_pixels;
+  };
+  EXPECT_EQ(in_fog("0.5"), 0);
+  EXPECT_GT(in_fog("0.9"), 0);
 }
 
 TEST(CandidatePilot, AMixThatHasMissedTheLightIsNotWithoutNoise) {
