@@ -1,6 +1,7 @@
 #include "worker/geometry/triangle_pairs.h"
 
-#include <algorithm>
+#include <Imath/ImathBox.h>
+
 #include <optional>
 
 namespace penumbra {
@@ -33,35 +34,24 @@ std::optional<SharedEdge> shared_edge(const TriangleMesh& mesh, uint32_t first, 
   return edge;
 }
 
-class Extent {
- public:
-  void add(const TriangleMesh& mesh, uint32_t triangle) {
-    const uint32_t* v = vertices_of(mesh, triangle);
-    for (int c = 0; c < 3; ++c) {
-      const Vec3f& p = mesh.positions[v[c]];
-      lo_ = empty_ ? p : Vec3f(std::min(lo_.x, p.x), std::min(lo_.y, p.y), std::min(lo_.z, p.z));
-      hi_ = empty_ ? p : Vec3f(std::max(hi_.x, p.x), std::max(hi_.y, p.y), std::max(hi_.z, p.z));
-      empty_ = false;
-    }
-  }
-  double half_area() const {
-    const Vec3d d = Vec3d(hi_) - Vec3d(lo_);
-    return d.x * d.y + d.y * d.z + d.z * d.x;
-  }
+Imath::Box3f bounds_of(const TriangleMesh& mesh, uint32_t triangle) {
+  Imath::Box3f box;
+  const uint32_t* v = vertices_of(mesh, triangle);
+  for (int c = 0; c < 3; ++c) box.extendBy(mesh.positions[v[c]]);
+  return box;
+}
 
- private:
-  bool empty_ = true;
-  Vec3f lo_, hi_;
-};
+double half_area(const Imath::Box3f& box) {
+  const Vec3d d = Vec3d(box.max) - Vec3d(box.min);
+  return d.x * d.y + d.y * d.z + d.z * d.x;
+}
 
 /// A box is visited about as often as its area says: together they must not be visited more often than apart.
 bool together_smaller(const TriangleMesh& mesh, uint32_t first, uint32_t second) {
-  Extent a, b, both;
-  a.add(mesh, first);
-  b.add(mesh, second);
-  both.add(mesh, first);
-  both.add(mesh, second);
-  return both.half_area() <= a.half_area() + b.half_area();
+  const Imath::Box3f a = bounds_of(mesh, first), b = bounds_of(mesh, second);
+  Imath::Box3f both = a;
+  both.extendBy(b);
+  return half_area(both) <= half_area(a) + half_area(b);
 }
 
 }  // namespace
