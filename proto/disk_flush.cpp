@@ -3,27 +3,18 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 
 #include "proto/status.h"
+#include "proto/system_error.h"
 
 namespace penumbra {
 namespace {
 
-absl::Status failed(std::string_view what, const std::string& path) {
-  const int error = errno;
-  const auto code = error == ENOENT                      ? absl::StatusCode::kNotFound
-                    : error == ENOSPC || error == EDQUOT ? absl::StatusCode::kResourceExhausted
-                                                         : absl::StatusCode::kInternal;
-  return make_status(code, "{} {}: {}", what, path, std::strerror(error));
-}
-
 absl::Status flush_path(const std::string& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return failed("opening", path);
-  const absl::Status status = ::fsync(file) == 0 ? absl::OkStatus() : failed("flushing", path);
+  if (file < 0) return system_error("opening", path);
+  const absl::Status status = ::fsync(file) == 0 ? absl::OkStatus() : system_error("flushing", path);
   ::close(file);
   return status;
 }
@@ -32,7 +23,7 @@ absl::Status flush_path(const std::string& path) {
 
 absl::StatusOr<std::shared_ptr<DiskFlush>> DiskFlush::open(const std::string& folder, int (*syncfs)(int)) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return failed("opening", folder);
+  if (descriptor < 0) return system_error("opening", folder);
   return std::shared_ptr<DiskFlush>(new DiskFlush(folder, descriptor, syncfs != nullptr ? syncfs : ::syncfs));
 }
 
@@ -42,7 +33,7 @@ DiskFlush::~DiskFlush() {
 
 absl::Status DiskFlush::flush_all() {
   const std::lock_guard lock(disk_);
-  if (failure_.ok() && syncfs_(descriptor_) != 0) failure_ = failed("flushing the disk of", folder_);
+  if (failure_.ok() && syncfs_(descriptor_) != 0) failure_ = system_error("flushing the disk of", folder_);
   return failure_;
 }
 
@@ -59,7 +50,7 @@ absl::Status DiskFlush::flush(int file, const std::string& path) {
   lock.unlock();
   const absl::Status status = !alone               ? flush_all()
                               : ::fsync(file) == 0 ? absl::OkStatus()
-                                                   : failed("flushing", path);
+                                                   : system_error("flushing", path);
   lock.lock();
   mine->status = status;
   mine->over = true;
@@ -71,7 +62,7 @@ absl::Status DiskFlush::flush(int file, const std::string& path) {
 absl::Status DiskFlush::flush(const std::vector<std::string>& files) {
   // The file, then its name: two flushes of the disk, where everything at once is one.
   for (const std::string& path : files)
-    if (::access(path.c_str(), F_OK) != 0) return failed("flushing", path);
+    if (::access(path.c_str(), F_OK) != 0) return system_error("flushing", path);
   if (files.size() > 1) return flush_all();
   for (const std::string& path : files) {
     RETURN_IF_ERROR(flush_path(path));
