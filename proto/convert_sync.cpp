@@ -58,6 +58,12 @@ absl::StatusOr<CompletedTask> from_proto(const v1::SyncRequest::Completed& messa
   if (!message.result().empty() && !is_digest(message.result()))
     return invalid_input("completed.result: '{:.80}' is not a digest", message.result());
   task.result = message.result();
+  if (message.bytes().size() > kMostBytesAlong)
+    return invalid_input("completed.bytes: {} bytes, at most {} may come with a report",
+                         message.bytes().size(), kMostBytesAlong);
+  if (message.result().empty() && !message.bytes().empty())
+    return invalid_input("completed.bytes: bytes without a digest");
+  task.bytes = message.bytes();
   ASSIGN_OR_RETURN(task.costs, list_from_proto<MixCost>("completed.costs", message.costs()));
   RETURN_IF_ERROR(check_text("completed.log", message.log()));
   task.log = message.log();
@@ -97,6 +103,7 @@ static void add_reports(const WorkerState& state, v1::SyncRequest& out) {
     v1::SyncRequest::Completed* added = out.add_completed();
     *added->mutable_lease() = to_proto(task.lease);
     added->set_result(task.result);
+    added->set_bytes(task.bytes);
     for (const MixCost& cost : task.costs) *added->add_costs() = to_proto(cost);
     added->set_log(task.log);
   }

@@ -11,6 +11,10 @@ namespace penumbra {
 
 inline constexpr uint32_t kSyncProtocol = 4;
 
+/// A result up to this size may travel in the Sync that reports it: a call less for each tile. A tile of 64 ×
+/// 64 pixels with two mixes has 229 kB.
+inline constexpr size_t kMostBytesAlong = size_t{256} << 10;
+
 /// Names one lease for ever: the epoch grows each time the task is leased again.
 struct LeaseId {
   JobId job;
@@ -29,6 +33,9 @@ struct HeldLease {
 struct CompletedTask {
   LeaseId lease;
   Digest result;  ///< blob of the serialised TileResult; empty for a pilot
+  /// The blob's bytes, at most kMostBytesAlong, if they come with the report instead of by an upload of their
+  /// own.
+  std::string bytes;
   std::vector<MixCost> costs;
   std::string log;  ///< what was logged while it was rendered, the tail
   bool operator==(const CompletedTask&) const = default;

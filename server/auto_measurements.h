@@ -16,8 +16,8 @@ struct Measurements {
   Table variance;               ///< mean of s² / (mean² + ε), summed over channels
   Table worth;     ///< how many pixels that mean is worth, (Σx)² / Σx²: one, if one outshines the rest
   Table measured;  ///< how many pixels were measured
-  std::vector<bool> lobed;                     ///< per tile: something there scatters light into a narrow lobe
-  Table cost;                                  ///< per pass: seconds, or units of work
+  std::vector<bool> lobed;  ///< per tile: something there scatters light into a narrow lobe
+  Table cost;               ///< per pass: seconds, or units of work
   std::vector<std::vector<BlockCost>> blocks;  ///< per tile; none where there were less than two whole passes
   double pilot_seconds = 0;
 };

@@ -21,13 +21,7 @@ absl::StatusOr<uint64_t> receive(const BlobFolder& blobs, const BlobLimits& limi
   v1::UploadChunk chunk;
   if (!reader.Read(&chunk)) return invalid_input("an upload without a chunk");
   RETURN_IF_ERROR(check_digest(chunk.digest()));
-  if (chunk.size() > limits.most_bytes)
-    return make_status(absl::StatusCode::kInvalidArgument, "blob {}: {} bytes, the limit is {}",
-                       chunk.digest(), chunk.size(), limits.most_bytes);
-  if (const uint64_t free = blobs.free_bytes(); free < limits.reserve_bytes + chunk.size())
-    return make_status(absl::StatusCode::kResourceExhausted,
-                       "blob {}: {} bytes; the server's disk has {} left and keeps {} of them free",
-                       chunk.digest(), chunk.size(), free, limits.reserve_bytes);
+  RETURN_IF_ERROR(check_room(blobs, limits, chunk.digest(), chunk.size()));
   const uint64_t size = chunk.size();
   const bool flush = !chunk.flush_later();
   ASSIGN_OR_RETURN(const auto writer, blobs.write(chunk.digest(), chunk.size(), chunk.offset()));

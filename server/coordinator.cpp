@@ -14,6 +14,8 @@ namespace {
 constexpr double kMostWaitSeconds = 5;
 // The loop wakes at least this often, so that a deadline is never missed by more.
 constexpr double kMostSleepSeconds = 1;
+// Shorter commits do not matter for anybody's silence.
+constexpr double kLongCommitSeconds = 0.05;
 // Time between the store's rests: what it does then is no matter of a single commit.
 constexpr double kRestSeconds = 1;
 
@@ -196,7 +198,10 @@ void Coordinator::run() {
     answer_waiting(now, finished, stopping);
     for (const Notice& notice : scheduler_.take_notices())
       log_about(notice.detail ? spdlog::level::debug : spdlog::level::info, notice.about, notice.text);
+    const double began = clock_().steady;
     absl::Status durable = commit();
+    // What workers have said meanwhile is not read yet. A slow disk must not cost them their leases.
+    if (const double took = clock_().steady - began; took >= kLongCommitSeconds) scheduler_.excuse(took);
     if (!durable.ok()) durable = give_up(durable);
     for (const Finish& finish : finished) finish(durable);
     if (const absl::Status rested = failed_ ? absl::OkStatus() : rest(); !rested.ok())

@@ -56,8 +56,7 @@ void jobs(const Snapshot& snapshot, Families& out) {
   MetricFamily& family = out.add("penumbra_jobs", "Jobs that the store holds, by state.", MetricType::Gauge);
   for (size_t i = 0; i < states.size(); ++i)
     Families::set(family, {{"state", std::string(name_of(static_cast<JobState>(i)))}}, states[i]);
-  out.gauge("penumbra_tasks_waiting",
-            "Tile tasks of unfinished jobs that no worker holds.", waiting);
+  out.gauge("penumbra_tasks_waiting", "Tile tasks of unfinished jobs that no worker holds.", waiting);
   out.gauge("penumbra_tasks_leased", "Tile tasks that workers hold.", leased);
   // Scaled by those that wait alone, workers would be taken away from what they render.
   out.gauge("penumbra_tasks_unfinished", "The sum of these two: what to scale workers by.", waiting + leased);

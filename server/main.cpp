@@ -179,7 +179,7 @@ absl::Status serve(Options options) {
 
   BlobsService blobs_service(coordinator.blobs(), options.blobs);
   RenderService render_service(coordinator);
-  WorkerService worker_service(coordinator);
+  WorkerService worker_service(coordinator, options.blobs);
   ASSIGN_OR_RETURN(Listener listener,
                    listen(options.listen, {&blobs_service, &render_service, &worker_service}));
   HttpPages pages(coordinator);

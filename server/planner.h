@@ -34,8 +34,8 @@ absl::StatusOr<PlannedPasses> planned_passes(const JobSpec& spec,
 absl::StatusOr<int64_t> passes_for_seconds(double budget, const std::vector<std::vector<MixCost>>& pilot,
                                            size_t mix, double factor = 1);
 
-/// Passes of an automatic mix: the mean over the pixels, as its blocks share in them, rounded, at least 1. Before it is
-/// known in which groups; what a plan's boundaries say is exact.
+/// Passes of an automatic mix: the mean over the pixels, as its blocks share in them, rounded, at least 1.
+/// Before it is known in which groups; what a plan's boundaries say is exact.
 int64_t mean_passes(const JobSpec& spec, const std::vector<PixelRect>& tiles, const AutoPlan& plan);
 
 /// The end of one range of passes, common to all tiles.

@@ -337,7 +337,8 @@ SyncAnswer Scheduler::answer(const WorkerState& state, const Now& now) {
     out.urgent = true;  // drop it
     busy_in_vain |= held.begun;
   }
-  // What it wants was said before it knew that a thread of its renders what nobody waits for: it says it anew.
+  // What it wants was said before it knew that a thread of its renders what nobody waits for: it says it
+  // anew.
   if (!state.draining && !busy_in_vain) grant(worker, state.wanted, now);
   for (const CompletedTask& task : state.completed) {
     listed.insert(task.lease);

@@ -117,6 +117,8 @@ class Scheduler {
   /// repeated later while the worker waits.
   SyncAnswer answer(const WorkerState& state, const Now& now);
 
+  /// For so long nobody was listened to, which is no worker's silence.
+  void excuse(double seconds);
   /// Ends the leases of silent workers, and those of tasks that have taken too long.
   void expire(const Now& now);
   /// When expire() will next have something to do, Now::steady; none without workers.

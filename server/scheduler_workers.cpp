@@ -15,6 +15,10 @@ std::optional<double> Scheduler::next_expiry() const {
   return next;
 }
 
+void Scheduler::excuse(double seconds) {
+  for (auto& [id, worker] : workers_) worker.last_seen += seconds;
+}
+
 void Scheduler::expire(const Now& now) {
   std::vector<std::string> silent;
   for (const auto& [id, worker] : workers_)

@@ -7,11 +7,26 @@
 namespace penumbra {
 namespace {
 
-/// Reads a result's bytes: they must be whole, finite, and of one rectangle.
-absl::StatusOr<ResultShape> shape_of(const BlobFolder& blobs, const CompletedTask& task) {
-  if (task.result.empty()) return ResultShape{};  // a pilot; the scheduler refuses it for anything else
+/// A result's bytes, which lie in the folder when this returns; those that came along are taken from the
+/// task. NotFound: they have to be uploaded. InvalidArgument: they are not what the digest says.
+absl::StatusOr<std::string> bytes_of(const BlobFolder& blobs, const BlobLimits& limits, CompletedTask& task) {
   // Verified when they were uploaded, moments ago, and again when they are merged.
-  ASSIGN_OR_RETURN(std::string bytes, blobs.read_unverified(task.result));
+  if (task.bytes.empty()) return blobs.read_unverified(task.result);
+  absl::Status kept = check_room(blobs, limits, task.result, task.bytes.size());
+  if (kept.ok()) kept = blobs.put(task.result, task.bytes);
+  if (kept.ok() || absl::IsInvalidArgument(kept)) {
+    RETURN_IF_ERROR(kept);
+    return std::move(task.bytes);
+  }
+  // The disk's trouble, not the worker's. It hears of it, and goes on trying, where it uploads.
+  task.bytes.clear();
+  return make_status(absl::StatusCode::kNotFound, "{}", message_of(kept));
+}
+
+/// Keeps a result's bytes and reads them: they must be whole, finite, and of one rectangle.
+absl::StatusOr<ResultShape> shape_of(const BlobFolder& blobs, const BlobLimits& limits, CompletedTask& task) {
+  if (task.result.empty()) return ResultShape{};  // a pilot; the scheduler refuses it for anything else
+  ASSIGN_OR_RETURN(std::string bytes, bytes_of(blobs, limits, task));
   ASSIGN_OR_RETURN(const ReceivedTile result, ReceivedTile::parse(std::move(bytes)));
   ResultShape shape;
   for (const TileView& mix : result.mixes()) {
@@ -28,7 +43,8 @@ absl::StatusOr<ResultShape> shape_of(const BlobFolder& blobs, const CompletedTas
 /// One call. Lives until gRPC says that it is over; finished exactly once, by the coordinator's reply.
 class SyncCall final : public grpc::ServerUnaryReactor {
  public:
-  SyncCall(Coordinator& coordinator, const v1::SyncRequest& request, v1::SyncResponse& response)
+  SyncCall(Coordinator& coordinator, const BlobLimits& limits, const v1::SyncRequest& request,
+           v1::SyncResponse& response)
       : coordinator_(coordinator), ticket_(coordinator.new_ticket()) {
     absl::StatusOr<WorkerState> state = from_proto(request);
     if (!state.ok()) {
@@ -36,7 +52,8 @@ class SyncCall final : public grpc::ServerUnaryReactor {
       return;
     }
     std::vector<absl::StatusOr<ResultShape>> shapes;
-    for (const CompletedTask& task : state->completed) shapes.push_back(shape_of(coordinator.blobs(), task));
+    for (CompletedTask& task : state->completed)
+      shapes.push_back(shape_of(coordinator.blobs(), limits, task));
     coordinator.sync(ticket_, *std::move(state), std::move(shapes),
                      [this, &response](absl::StatusOr<DesiredState> desired) {
                        if (desired.ok()) response = to_proto(*desired);
@@ -56,7 +73,7 @@ class SyncCall final : public grpc::ServerUnaryReactor {
 
 grpc::ServerUnaryReactor* WorkerService::Sync(grpc::CallbackServerContext*, const v1::SyncRequest* request,
                                               v1::SyncResponse* response) {
-  return new SyncCall(coordinator_, *request, *response);
+  return new SyncCall(coordinator_, limits_, *request, *response);
 }
 
 }  // namespace penumbra

@@ -1,5 +1,6 @@
 #pragma once
 #include "proto/worker.grpc.pb.h"
+#include "server/blob_limits.h"
 #include "server/coordinator.h"
 
 namespace penumbra {
@@ -8,13 +9,15 @@ namespace penumbra {
 /// hold no thread.
 class WorkerService final : public v1::Worker::CallbackService {
  public:
-  explicit WorkerService(Coordinator& coordinator) : coordinator_(coordinator) {}
+  WorkerService(Coordinator& coordinator, const BlobLimits& limits)
+      : coordinator_(coordinator), limits_(limits) {}
 
   grpc::ServerUnaryReactor* Sync(grpc::CallbackServerContext*, const v1::SyncRequest* request,
                                  v1::SyncResponse* response) override;
 
  private:
   Coordinator& coordinator_;
+  BlobLimits limits_;
 };
 
 }  // namespace penumbra

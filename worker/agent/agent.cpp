@@ -174,7 +174,6 @@ bool Agent::take_answer(const absl::Status& status, const v1::SyncResponse& resp
       for (const auto& finished : missing) uploads_.push_back({nullptr, finished});
       upload_ready_.notify_one();
     }
-    if (!missing.empty()) pause(kRetrySeconds);  // reporting them again makes sense once they are there
     return true;
   }
   if (is_refusal(desired.status())) {
@@ -244,6 +243,12 @@ void Agent::hand_in(const std::shared_ptr<Assignment>& assignment, TaskOutcome o
     return;
   }
   finished->bytes = serialize(outcome.pixels);
+  if (finished->bytes.size() <= kMostBytesAlong) {
+    finished->report.result = sha256(finished->bytes);
+    finished->along = true;
+    board_.complete(*assignment, std::move(finished));
+    return;
+  }
   const std::lock_guard lock(upload_mutex_);
   uploads_.push_back({assignment, std::move(finished)});
   upload_ready_.notify_one();
@@ -275,23 +280,25 @@ void Agent::upload(const ToUpload& item) {
       log_about(spdlog::level::warn, about(finished.report.lease), message_of(status) + "; trying again");
     const bool again =
         full || absl::IsUnavailable(status) || absl::IsAborted(status) || absl::IsCancelled(status);
-    const bool cancelled = item.assignment && item.assignment->cancel;
     if (stopping_) return;
-    if (!item.assignment) {
-      if (!again) return;
-    } else if (cancelled) {
-      board_.drop(*item.assignment);
-      return;
-    } else if (status.ok()) {
-      board_.complete(*item.assignment, item.finished);
-      return;
-    } else if (!again) {
-      board_.fail(*item.assignment, TaskFailure::kError, "uploading the result: " + message_of(status),
-                  finished.report.log);
-      return;
-    }
+    const LeaseId& lease = finished.report.lease;
+    if (!again || !(item.assignment ? !item.assignment->cancel.load() : board_.wants(lease)))
+      return settle(item, status);
     pause(kRetrySeconds);
   }
+}
+
+void Agent::settle(const ToUpload& item, const absl::Status& status) {
+  Finished& finished = *item.finished;
+  if (!item.assignment)
+    board_.uploaded(finished);
+  else if (item.assignment->cancel)
+    board_.drop(*item.assignment);
+  else if (status.ok())
+    board_.complete(*item.assignment, item.finished);
+  else
+    board_.fail(*item.assignment, TaskFailure::kError, "uploading the result: " + message_of(status),
+                finished.report.log);
 }
 
 }  // namespace penumbra

@@ -60,6 +60,7 @@ class Agent {
   void hand_in(const std::shared_ptr<Assignment>& assignment, TaskOutcome outcome, std::string log);
   void upload_loop();
   void upload(const ToUpload& item);
+  void settle(const ToUpload& item, const absl::Status& status);
   void pause(double seconds);
 
   AgentOptions options_;

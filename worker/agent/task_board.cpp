@@ -4,19 +4,36 @@
 #include <chrono>
 
 namespace penumbra {
+namespace {
+
+// A Sync that reports must be over in time on a slow link, too: 8 s at 1 Mb/s.
+constexpr size_t kMostBytesOfSync = size_t{1} << 20;
+
+}  // namespace
 
 void TaskBoard::describe(WorkerState& state) {
   const std::lock_guard lock(mutex_);
   // A cancelled task is no longer ours, even while its thread has not noticed.
   for (const auto& [lease, held] : held_)
     if (!held.assignment->cancel) state.held.push_back({lease, held.begun});
-  for (const auto& [lease, finished] : completed_) state.completed.push_back(finished->report);
+  news_ = false;
+  size_t bytes_left = kMostBytesOfSync;
+  for (const auto& [lease, finished] : completed_) {
+    const size_t along = finished->along ? finished->bytes.size() : 0;
+    if (finished->uploading || along > bytes_left) {
+      state.held.push_back({lease, true});
+      news_ = news_ || !finished->uploading;
+      continue;
+    }
+    bytes_left -= along;
+    state.completed.push_back(finished->report);
+    if (finished->along) state.completed.back().bytes = finished->bytes;
+  }
   for (const auto& [lease, failed] : failed_) state.failed.push_back(failed);
   for (const auto& [job, scene] : loads_) state.loaded.push_back(scene);
   for (const auto& [job, spec] : jobs_) state.known_jobs.push_back(job);
   state.wanted = draining_ ? 0 : wanted_ - std::min(wanted_, lost_threads());
   state.draining = draining_;
-  news_ = false;
 }
 
 std::vector<std::shared_ptr<Finished>> TaskBoard::apply(const DesiredState& desired,
@@ -34,6 +51,7 @@ std::vector<std::shared_ptr<Finished>> TaskBoard::apply(const DesiredState& desi
   // Only what the server was told of can be missing from its answer on purpose.
   for (const HeldLease& held : told.held) {
     const auto it = held_.find(held.lease);
+    if (!wanted.contains(held.lease)) completed_.erase(held.lease);
     if (it == held_.end() || wanted.contains(held.lease)) continue;
     it->second.assignment->cancel = true;
     it->second.lost = true;
@@ -41,8 +59,12 @@ std::vector<std::shared_ptr<Finished>> TaskBoard::apply(const DesiredState& desi
   }
   std::vector<std::shared_ptr<Finished>> missing;
   for (const CompletedTask& task : told.completed)
-    if (const auto it = completed_.find(task.lease); it != completed_.end() && wanted.contains(task.lease))
+    if (const auto it = completed_.find(task.lease);
+        it != completed_.end() && wanted.contains(task.lease) && !it->second->uploading) {
+      it->second->along = false;
+      it->second->uploading = true;
       missing.push_back(it->second);
+    }
 
   for (const DesiredLease& lease : desired.leases) {
     const auto job = jobs_.find(lease.lease.job);
@@ -63,6 +85,18 @@ std::vector<std::shared_ptr<Finished>> TaskBoard::apply(const DesiredState& desi
     reported_loads_.erase(job);
   }
   return missing;
+}
+
+void TaskBoard::uploaded(Finished& finished) {
+  const std::lock_guard lock(mutex_);
+  finished.uploading = false;
+  news_ = true;
+  news_cv_.notify_all();
+}
+
+bool TaskBoard::wants(const LeaseId& lease) const {
+  const std::lock_guard lock(mutex_);
+  return completed_.contains(lease);
 }
 
 /// Leases that the threads would take which still render something that nobody wants any more. Most notice

@@ -27,6 +27,9 @@ struct Assignment {
 struct Finished {
   CompletedTask report;
   std::string bytes;  ///< of report.result; empty for a pilot
+  // Guarded by the board, once it has this.
+  bool along = false;      ///< the bytes travel with the report: they have not been uploaded
+  bool uploading = false;  ///< the server lacks them: they are on their way
 };
 
 class TaskBoard {
@@ -38,10 +41,15 @@ class TaskBoard {
 
   // For the Sync loop.
 
-  /// Fills in what the board knows: reports, leases, jobs, wanted, draining.
+  /// Fills in what the board knows: reports, leases, jobs, wanted, draining. Of results that travel along no
+  /// more than fit into one Sync; the rest are still called held, and are news.
   void describe(WorkerState& state);
-  /// Takes the answer to `told`. Returns the results that the server wants again: it has lost their blobs.
+  /// Takes the answer to `told`. Returns the results that the server wants uploaded, each once: it has lost
+  /// their blobs, or had no room for what came along. They are called held until uploaded() is told of them.
   std::vector<std::shared_ptr<Finished>> apply(const DesiredState& desired, const WorkerState& told);
+  void uploaded(Finished& finished);
+  /// Whether a finished task still waits to be acknowledged.
+  bool wants(const LeaseId& lease) const;
   /// It holds all the leases that it wants; never while it drains.
   bool full() const;
   /// What ended a wait.
@@ -60,7 +68,7 @@ class TaskBoard {
 
   /// The next task; blocks. Null when the board is closed.
   std::shared_ptr<Assignment> take();
-  /// Rendered and, for a run task, uploaded.
+  /// Rendered and, for a run task, uploaded, unless its bytes are to travel along.
   void complete(const Assignment& assignment, std::shared_ptr<Finished> finished);
   void fail(const Assignment& assignment, TaskFailure reason, std::string message, std::string log);
   /// The task was cancelled: nothing to report.

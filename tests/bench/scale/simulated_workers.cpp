@@ -113,12 +113,22 @@ void SimulatedWorkers::upload_loop() {
 
 void SimulatedWorkers::finish(Worker& worker, const DesiredLease& lease) {
   const std::string bytes = result_of(*lease.task);
-  CompletedTask done{lease.lease, sha256(bytes), {}};
+  CompletedTask done{lease.lease, sha256(bytes), {}, {}, {}};
+  if (bytes.size() > kMostBytesAlong)
+    upload(*blobs_[worker.number % blobs_.size()], done.result, bytes);
+  else
+    done.bytes = bytes;
+  counts_.result_bytes += bytes.size();
+  for (const PassRange& range : lease.task->passes) done.costs.push_back({range.count(), 0.1, 100, 10, 0, 0});
+  worker.state.completed.push_back(std::move(done));
+}
+
+void SimulatedWorkers::upload(v1::Blobs::Stub& blobs, const Digest& digest, const std::string& bytes) {
   grpc::ClientContext context;
   v1::UploadResponse response;
-  const auto writer = blobs_[worker.number % blobs_.size()]->Upload(&context, &response);
+  const auto writer = blobs.Upload(&context, &response);
   v1::UploadChunk chunk;
-  chunk.set_digest(done.result);
+  chunk.set_digest(digest);
   chunk.set_size(bytes.size());
   chunk.set_flush_later(true);
   for (size_t at = 0; at == 0 || at < bytes.size(); at += kChunkBytes) {
@@ -127,10 +137,7 @@ void SimulatedWorkers::finish(Worker& worker, const DesiredLease& lease) {
     chunk.Clear();
   }
   writer->WritesDone();
-  if (!writer->Finish().ok()) return;
-  counts_.result_bytes += bytes.size();
-  for (const PassRange& range : lease.task->passes) done.costs.push_back({range.count(), 0.1, 100, 10, 0, 0});
-  worker.state.completed.push_back(std::move(done));
+  if (!writer->Finish().ok()) ++counts_.failed_syncs;
 }
 
 /// No two alike, or the store would keep one.

@@ -39,6 +39,7 @@ class SimulatedWorkers {
   void answered(Worker& worker, const grpc::Status& status);
   void upload_loop();
   void finish(Worker& worker, const DesiredLease& lease);
+  void upload(v1::Blobs::Stub& blobs, const Digest& digest, const std::string& bytes);
   std::string result_of(const TileTask& task);
 
   SimulationOptions options_;

@@ -187,7 +187,10 @@ TEST(Durability, GarbageIsRefusedAndItsWorkerCannotFailTheJob) {
     }
     if (leases.empty()) break;
     hand.state.held.clear();
-    hand.state.completed = {hand.result_of(leases[0], garbage(*leases[0].task, kind))};
+    const std::string bytes = garbage(*leases[0].task, kind);
+    // Every other comes with the report, the first of them with bytes that its digest does not name.
+    hand.state.completed = {hand.result_of(leases[0], bytes)};
+    if (kind % 2 == 1) hand.state.completed[0].bytes = kind == 1 ? bytes + '.' : bytes;
     hand.state.wanted = 0;
     const auto answer = hand.say(hand.state);
     ASSERT_TRUE(answer.ok());
@@ -212,6 +215,28 @@ TEST(Durability, AWorkerThatComputesForEverLosesItsTasksAndGetsNoMore) {
   const RunSummary summary = expect_calm(cluster, job);
   EXPECT_GE(summary.status.faults.overdue_leases, 1u);
   EXPECT_LE(summary.status.faults.overdue_leases, 2u) << "it was given more than its first tasks";
+}
+
+// A commit that takes longer than silence may last: nobody was silent, the server did not listen.
+TEST(Durability, ASlowDiskCostsTimeAndNothingElse) {
+  Cluster cluster(test_name());
+  const std::string disk = cluster.path("disk");
+  std::ofstream(disk) << 0;
+  cluster.server_prefix = {"env", std::string("LD_PRELOAD=") + PENUMBRA_SLOW_DISK,
+                           "PENUMBRA_DISK_FILE=" + disk};
+  cluster.server_flags = {"--silence", "1s"};
+  cluster.start_server();
+  for (int i = 0; i < 3; ++i) cluster.start_worker();
+  const JobId job = cluster.submit(cluster.spec(cluster.upload_scene("6")));
+  cluster.wait_until(job, 30, [](const JobStatus& s) { return s.tasks_done > 0; });
+  std::ofstream(disk) << 800;  // twice a commit: results, then the log
+  sleep_seconds(8);
+  const JobStatus slow = cluster.status(job);
+  std::ofstream(disk) << 0;
+  EXPECT_EQ(slow.state, JobState::kRunning) << "it was to be slow long before its end";
+  const RunSummary summary = expect_calm(cluster, job);
+  EXPECT_EQ(summary.status.retries, 0u);
+  EXPECT_EQ(summary.status.faults.lost_leases, 0u);
 }
 
 TEST(Durability, ClockJumpsCostNothing) {

@@ -54,6 +54,68 @@ TEST(TaskBoard, TasksGoFromLeaseToAcknowledgement) {
   EXPECT_TRUE(board.empty());
 }
 
+/// Leases, takes and completes tasks 1 to n of job j, each with so many bytes that travel along.
+void complete_along(TaskBoard& board, uint64_t n, size_t bytes) {
+  for (uint64_t task = 1; task <= n; ++task) {
+    const LeaseId id{"j", task, 1};
+    board.apply(leases({id}), {});
+    const auto assignment = board.take();
+    auto finished = std::make_shared<Finished>();
+    finished->report.lease = id;
+    finished->report.result = Digest(64, 'a');
+    finished->bytes = std::string(bytes, 'x');
+    finished->along = true;
+    board.complete(*assignment, finished);
+  }
+}
+
+// What does not fit into one Sync must not look lost to the server, nor wait for other news.
+TEST(TaskBoard, ResultsThatTravelAlongFillNoMoreThanAMegabyteOfASync) {
+  TaskBoard board(4);
+  complete_along(board, 6, kMostBytesAlong);
+  const WorkerState first = told(board);
+  ASSERT_EQ(first.completed.size(), 4u);
+  for (const CompletedTask& task : first.completed) EXPECT_EQ(task.bytes.size(), kMostBytesAlong);
+  ASSERT_EQ(first.held.size(), 2u);
+  for (const HeldLease& held : first.held) EXPECT_TRUE(held.begun);
+  EXPECT_TRUE(board.wait_for_news(0));
+  DesiredState desired = leases({{"j", 5, 1}, {"j", 6, 1}}, false);
+  for (const CompletedTask& task : first.completed) desired.acknowledged.push_back(task.lease);
+  EXPECT_TRUE(board.apply(desired, first).empty());
+  const WorkerState second = told(board);
+  EXPECT_EQ(second.completed.size(), 2u);
+  EXPECT_TRUE(second.held.empty());
+  EXPECT_FALSE(board.wait_for_news(0));
+}
+
+TEST(TaskBoard, WhatTheServerHadNoRoomForIsUploadedOnceAndReportedWhenItIsThere) {
+  TaskBoard board(1);
+  complete_along(board, 1, 100);
+  const LeaseId id{"j", 1, 1};
+  const DesiredState still_leased = leases({id}, false);
+  const auto missing = board.apply(still_leased, told(board));
+  ASSERT_EQ(missing.size(), 1u);
+  WorkerState state = told(board);
+  EXPECT_TRUE(state.completed.empty()) << "it would be asked for again and again";
+  ASSERT_EQ(state.held.size(), 1u);
+  EXPECT_TRUE(board.apply(still_leased, state).empty());
+  EXPECT_TRUE(board.wants(id));
+  board.uploaded(*missing.front());
+  EXPECT_TRUE(board.wait_for_news(0));
+  state = told(board);
+  ASSERT_EQ(state.completed.size(), 1u);
+  EXPECT_TRUE(state.completed.front().bytes.empty());
+}
+
+TEST(TaskBoard, AnUploadThatNobodyWantsAnyMoreIsNotGoneOnWith) {
+  TaskBoard board(1);
+  complete_along(board, 1, 100);
+  (void)board.apply(leases({{"j", 1, 1}}, false), told(board));
+  board.apply({}, told(board));  // cancelled
+  EXPECT_FALSE(board.wants({"j", 1, 1}));
+  EXPECT_TRUE(board.empty());
+}
+
 // A call that reports cannot be hurried: news must not wake whoever waits for its end, again and again.
 TEST(TaskBoard, NewsDoNotEndAWaitForTheAnswer) {
   TaskBoard board(1);  // a new one has news

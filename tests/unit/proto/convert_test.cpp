@@ -166,8 +166,8 @@ TEST(Convert, BothHalvesOfASyncComeBack) {
   state.name = "cache#0";
   state.held = {{{"j1", 2, 3}, true}};
   const LeaseId done{"j1", 4, 1}, pilot{"j1", 5, 1}, bad{"j1", 6, 1}, returned{"j1", 7, 1};
-  state.completed.push_back({done, kDigest, {MixCost{8, 0.25, 1000, 20, 0, 0}}});
-  state.completed.push_back({pilot, "", {}});
+  state.completed.push_back({done, kDigest, "its bytes", {MixCost{8, 0.25, 1000, 20, 0, 0}}, {}});
+  state.completed.push_back({pilot, "", {}, {}, {}});
   state.failed.push_back({bad, TaskFailure::kBadInput, "why"});
   state.failed.push_back({returned, TaskFailure::kReturned, ""});
   state.failed.push_back({{"j1", 8, 1}, TaskFailure::kLostInput, "gone"});
@@ -244,6 +244,18 @@ TEST(Convert, ValuesOutOfRangeAreRefusedByName) {
     EXPECT_TRUE(absl::IsInvalidArgument(spec.status()));
     EXPECT_NE(message_of(spec.status()).find(field), std::string::npos) << spec.status();
   }
+}
+
+TEST(Convert, ResultsTooLargeToComeAlongAreRefused) {
+  WorkerState state;
+  state.name = "cache#0";
+  state.worker = {"uuid", "host", "avx2", 4};
+  state.completed.push_back({{"j1", 4, 1}, kDigest, std::string(kMostBytesAlong, 'x'), {}, {}});
+  EXPECT_TRUE(from_proto(to_proto(state)).ok());
+  state.completed.front().bytes += 'x';
+  EXPECT_EQ(from_proto(to_proto(state)).status().code(), absl::StatusCode::kInvalidArgument);
+  state.completed.front() = {{"j1", 4, 1}, "", "x", {}, {}};
+  EXPECT_EQ(from_proto(to_proto(state)).status().code(), absl::StatusCode::kInvalidArgument);
 }
 
 TEST(Convert, AnotherProtocolIsRefused) {

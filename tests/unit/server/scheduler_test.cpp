@@ -34,6 +34,20 @@ TEST_F(SchedulerTest, ThePilotDecidesThePasses) {
   EXPECT_EQ(summary.tiles.size(), 4u);  // 2 tiles × 2 mixes, one worker
 }
 
+TEST_F(SchedulerTest, WhileTheServerDoesNotListenNobodyIsSilent) {
+  const JobId job = submit();
+  WorkerState a = worker("a", "0");
+  sync(a);
+  now_.steady += 25;  // a commit
+  scheduler_.excuse(25);
+  now_.steady += 9.999;
+  scheduler_.expire(now_);
+  EXPECT_EQ(scheduler_.find(job)->leased(), 1u);
+  now_.steady += 0.001;
+  scheduler_.expire(now_);
+  EXPECT_EQ(scheduler_.find(job)->leased(), 0u);
+}
+
 TEST_F(SchedulerTest, SilenceEndsLeasesAtTenSecondsSharp) {
   const JobId job = submit();
   WorkerState a = worker("a", "0");
