@@ -9,7 +9,7 @@
 
 namespace penumbra {
 
-inline constexpr uint32_t kSyncProtocol = 4;
+inline constexpr uint32_t kSyncProtocol = 5;
 
 /// A result up to this size may travel in the Sync that reports it: a call less for each tile. A tile of 64 ×
 /// 64 pixels with two mixes has 229 kB.
