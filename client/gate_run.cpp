@@ -149,15 +149,17 @@ GateRow cpu_row(const GateMix& now, const GateMix& before, const GateRun& run, c
   return row;
 }
 
-/// How much longer an inconclusive row would have to run if nothing has changed.
+/// How much more of a picture an inconclusive row would want if nothing has changed. Not how many more
+/// passes: one run's relMSE is a sum over pixels of squares of one error each, so how sure it is depends on
+/// the pixels alone.
 std::string advice(const GateRow& row) {
   const Estimate& e = *row.log_ratio;
   const double half = interval({0, e.standard_error, e.degrees_of_freedom}, 1 - 2 * kMissed).high;
   const double limit = std::log1p(row.tolerance);
   if (row.figure != "error per pass" || !(half > 0)) return "";
-  return fmt::format("±{:.1f} % is too uncertain for {:.3g} %: about {:.1f} times the passes would do",
-                     100 * std::expm1(half), 100 * row.tolerance,
-                     std::max(1.0, std::pow(2 * half / limit, 2)));
+  return fmt::format(
+      "±{:.1f} % is too uncertain for {:.3g} %: a picture of about {:.1f} times the lit pixels would do",
+      100 * std::expm1(half), 100 * row.tolerance, std::max(1.0, std::pow(2 * half / limit, 2)));
 }
 
 }  // namespace
