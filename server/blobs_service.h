@@ -1,15 +1,9 @@
 #pragma once
 #include "proto/blob_folder.h"
 #include "proto/blobs.grpc.pb.h"
+#include "server/blob_transfer.h"
 
 namespace penumbra {
-
-struct BlobLimits {
-  uint64_t most_bytes = uint64_t{1} << 36;  ///< of one blob
-  /// Bytes of the disk that blobs leave free, so that the job store can always write: a full disk stops
-  /// uploads (RESOURCE_EXHAUSTED; workers keep their results and try again), not the server.
-  uint64_t reserve_bytes = uint64_t{256} << 20;
-};
 
 /// proto/blobs.proto over a folder. Translates only.
 class BlobsService final : public v1::Blobs::Service {
