@@ -232,7 +232,7 @@ class Server {
   Now now_{100, 1e9, 0};
   size_t jobs_ = 0;
   std::map<LeaseId, TileTask> tasks_;  ///< all that was ever given out
-  WorkerState worker_{"v", {"w", "h", "avx2", 2}, "0", {}, {}, {}, {}, 2};
+  WorkerState worker_{"v", {"w", "h", "avx2", 8}, "0", {}, {}, {}, {}, 8};
 };
 
 /// One blob: what was uploaded can be had again, and nothing else.

@@ -184,7 +184,7 @@ std::string submit(JobSpec spec, const std::string& request, const JobTerms& ter
 
 void keep_requests() {
   std::string work, ask, frames;
-  for (int i = 0; i < 24; ++i) work += step(11);
+  for (int i = 0; i < 6; ++i) work += step(11);  // enough to finish all but the longest
   v1::JobRequest job;
   job.set_job("j0");
   ask = step(1, job.SerializeAsString());
@@ -195,6 +195,12 @@ void keep_requests() {
   keep("wire_requests", "seconds", submit(small_job({"sa:1"}, CpuSecondsBudget{4}), "r") + work + end);
   keep("wire_requests", "error", submit(small_job({"sa:1"}, TargetErrorBudget{1}), "r") + work + end);
   keep("wire_requests", "auto", submit(small_job({"auto"}, CpuSecondsBudget{4}), "r") + work + end);
+  keep("wire_requests", "auto_passes", submit(small_job({"auto"}, SppBudget{64}), "r") + work + end);
+  keep("wire_requests", "auto_error", submit(small_job({"auto"}, TargetErrorBudget{1}), "r") + work + end);
+  keep("wire_requests", "longest",
+       submit(small_job({"sa:1", "auto"}, CpuSecondsBudget{1e300}), "r") + work + end);
+  keep("wire_requests", "least_error",
+       submit(small_job({"sa:1", "auto"}, TargetErrorBudget{1e-300}), "r") + work + end);
   keep("wire_requests", "planned", submit(planned_job(), "r") + work + end);
   keep("wire_requests", "bins", submit(full_job(), "r") + work + step(13, "") + end);
   const std::string first = submit(small_job({"sa:1"}, SppBudget{1}), "r", {"u", 1, {"k=v"}, {}});
