@@ -16,6 +16,8 @@ template <class... Ts>
 struct Overload : Ts... {
   using Ts::operator()...;
 };
+template <class... Ts>
+Overload(Ts...) -> Overload<Ts...>;  // clang 14 does not deduce it
 
 PixelRect rect_of(const Json& json) {
   const std::vector<int> edges = integers_of<int>(json);
