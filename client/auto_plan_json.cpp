@@ -1,5 +1,6 @@
 #include "client/auto_plan_json.h"
 
+#include "client/json_integers.h"
 #include "proto/auto_plan.h"
 #include "proto/blocks.h"
 #include "proto/status.h"
@@ -11,15 +12,15 @@ namespace {
 /// May throw what nlohmann::json throws for a missing key or a wrong type.
 absl::StatusOr<AutoPlan> read(const Json& json, const std::vector<PixelRect>& rects) {
   AutoPlan plan;
-  plan.mix = json.at("mix").get<int>();
+  plan.mix = integer_of<int>(json.at("mix"));
   for (const Json& text : json.at("candidates")) {
     ASSIGN_OR_RETURN(Mix mix, parse_mix(text.get<std::string>()));
     if (mix.automatic) return invalid_input("auto_plans: `auto` is no candidate of itself");
     plan.candidates.push_back(std::move(mix));
   }
   for (const Json& tile : json.at("tiles")) {
-    TilePlan read{tile.at("candidate").get<int>(), tile.at("passes").get<int64_t>()};
-    for (const int share : tile.value("shares", std::vector<int>())) {
+    TilePlan read{integer_of<int>(tile.at("candidate")), integer_of<int64_t>(tile.at("passes"))};
+    for (const int share : tile.contains("shares") ? integers_of<int>(tile["shares"]) : std::vector<int>()) {
       if (share < 1 || share > kWholeShare) return invalid_input("auto_plans: a share of {}", share);
       read.shares.push_back(static_cast<uint8_t>(share));
     }
@@ -83,11 +84,14 @@ Json earlier_plans_json(const std::vector<EarlierPlan>& plans) {
 
 absl::StatusOr<std::vector<EarlierPlan>> earlier_plans_from_json(const Json& json, const JobSpec& spec) {
   std::vector<EarlierPlan> plans;
-  const size_t tiles = tiles_of(spec).size();
+  const uint64_t tiles = tile_count(spec);
   try {
-    for (const Json& one : json)
-      plans.push_back({one.at("until").get<double>(), one.at("passes").get<std::vector<int64_t>>(),
-                       one.at("autos").get<std::vector<std::vector<int64_t>>>()});
+    for (const Json& one : json) {
+      EarlierPlan& plan = plans.emplace_back();
+      plan.until = one.at("until").get<double>();
+      plan.passes = integers_of<int64_t>(one.at("passes"));
+      for (const Json& tile_passes : one.at("autos")) plan.autos.push_back(integers_of<int64_t>(tile_passes));
+    }
   } catch (const Json::exception& fault) {
     return invalid_input("earlier_plans: {}", fault.what());
   }

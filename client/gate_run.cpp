@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "client/json_integers.h"
 #include "client/run_json.h"
 #include "proto/status.h"
 
@@ -56,7 +57,7 @@ void take_tiles(const Json& tiles, GateRun& run) {
   std::map<std::pair<size_t, std::vector<int>>, double> seconds;
   std::vector<double> units;
   for (const Json& row : tiles) {
-    seconds[{row.at("mix").get<size_t>(), row.at("rect").get<std::vector<int>>()}] +=
+    seconds[{integer_of<size_t>(row.at("mix")), integers_of<int>(row.at("rect"))}] +=
         row.at("cpu_seconds").get<double>();
     if (!row.contains("calibration")) continue;
     if (const auto unit = number_at(row["calibration"], "seconds_per_unit"); unit && *unit > 0)
@@ -70,7 +71,7 @@ void take_tiles(const Json& tiles, GateRun& run) {
 /// May throw what nlohmann::json throws.
 GateRun read_run(const Json& json) {
   GateRun run;
-  run.resolution = json.at("resolution").get<std::vector<int64_t>>();
+  run.resolution = integers_of<int64_t>(json.at("resolution"));
   for (const Json& mix : json.at("mixes")) run.mixes.push_back(mix_of(mix));
   if (json.contains("tiles")) take_tiles(json["tiles"], run);
   if (json.contains("calibration")) run.unit_seconds = number_at(json["calibration"], "seconds_per_unit");
@@ -78,9 +79,9 @@ GateRun read_run(const Json& json) {
     for (const Json& worker : json["workers"]) run.isas.insert(worker.value("isa", ""));
   if (json.contains("spec")) {
     const Json& spec = json["spec"];
-    run.crop = spec.at("crop").get<std::vector<int64_t>>();
+    run.crop = integers_of<int64_t>(spec.at("crop"));
     run.bundle = spec.at("bundle").get<std::string>();
-    run.max_depth = spec.at("max_depth").get<int64_t>();
+    run.max_depth = integer_of<int64_t>(spec.at("max_depth"));
   }
   return run;
 }

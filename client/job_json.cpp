@@ -3,9 +3,11 @@
 #include <variant>
 
 #include "client/auto_plan_json.h"
+#include "client/json_integers.h"
 #include "client/parse_text.h"
 #include "film/film_image.h"
 #include "proto/status.h"
+#include "proto/tiles.h"
 
 namespace penumbra {
 namespace {
@@ -14,9 +16,13 @@ template <class... Ts>
 struct Overload : Ts... {
   using Ts::operator()...;
 };
+template <class... Ts>
+Overload(Ts...) -> Overload<Ts...>;  // clang 14 does not deduce it
 
 PixelRect rect_of(const Json& json) {
-  return {json.at(0).get<int>(), json.at(1).get<int>(), json.at(2).get<int>(), json.at(3).get<int>()};
+  const std::vector<int> edges = integers_of<int>(json);
+  if (edges.size() != 4) throw Json::type_error::create(302, "not four edges", &json);
+  return {edges[0], edges[1], edges[2], edges[3]};
 }
 
 /// May throw what nlohmann::json throws for a missing key or a wrong type.
@@ -32,31 +38,36 @@ absl::StatusOr<JobSpec> read(const Json& json) {
   if (budget.contains("cpu_seconds"))
     spec.budget = CpuSecondsBudget{budget["cpu_seconds"].get<double>()};
   else if (budget.contains("spp"))
-    spec.budget = SppBudget{budget["spp"].get<int64_t>()};
+    spec.budget = SppBudget{integer_of<int64_t>(budget["spp"])};
   else
     spec.budget = TargetErrorBudget{budget.at("target_error").get<double>()};
   ASSIGN_OR_RETURN(spec.sampler, parse_sampler("sampler", json.at("sampler").get<std::string>()));
-  spec.width = json.at("width").get<int>();
-  spec.height = json.at("height").get<int>();
+  spec.width = integer_of<int>(json.at("width"));
+  spec.height = integer_of<int>(json.at("height"));
   spec.crop = rect_of(json.at("crop"));
-  spec.max_depth = json.at("max_depth").get<int>();
-  spec.tile = json.at("tile").get<int>();
-  spec.camera_grid = json.value("camera_grid", 0);
-  spec.seed = json.at("seed").get<uint64_t>();
+  spec.max_depth = integer_of<int>(json.at("max_depth"));
+  spec.tile = integer_of<int>(json.at("tile"));
+  if (json.contains("camera_grid")) spec.camera_grid = integer_of<int>(json["camera_grid"]);
+  spec.seed = integer_of<uint64_t>(json.at("seed"));
   spec.strict = json.at("strict").get<bool>();
-  spec.plan = json.at("plan").get<std::vector<int64_t>>();
+  spec.plan = integers_of<int64_t>(json.at("plan"));
   spec.reference = json.at("reference").get<std::string>();
   spec.leave_out = json.value("leave_out", std::vector<std::string>());
   for (const auto& [name, rect] : json.at("regions").items()) spec.regions.push_back({name, rect_of(rect)});
-  if (spec.width < 1 || spec.height < 1 || spec.crop.area() <= 0 ||
-      !contains({0, 0, spec.width, spec.height}, spec.crop))
+  // Edge by edge: areas and widths of any four integers may be beyond what can be said, or positive by
+  // mistake.
+  const PixelRect& crop = spec.crop;
+  if (crop.x1 <= crop.x0 || crop.y1 <= crop.y0 || !contains({0, 0, spec.width, spec.height}, crop))
     return invalid_input("spec: the crop does not lie in {}x{}", spec.width, spec.height);
   // Absent where an earlier version wrote the file.
   if (json.contains("transient") && !json["transient"].is_null()) {
     const Json& t = json["transient"];
-    spec.transient = Transient{t.at("t0").get<double>(), t.at("t1").get<double>(), t.at("bins").get<int>()};
+    spec.transient =
+        Transient{t.at("t0").get<double>(), t.at("t1").get<double>(), integer_of<int>(t.at("bins"))};
   }
-  if (spec.tile < 1) return invalid_input("spec: tile {}", spec.tile);
+  // As the server will say, but before the tiles are listed here.
+  if (spec.tile < 1 || spec.tile > kMostTile || tile_count(spec) > kMostTiles)
+    return invalid_input("spec: tile {}", spec.tile);
   // Absent where an earlier version wrote the file: it had no `auto`.
   if (json.contains("auto_plans")) {
     ASSIGN_OR_RETURN(spec.auto_plans, auto_plans_from_json(json["auto_plans"], spec));

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "client/auto_plan_json.h"
+#include "client/json_integers.h"
 #include "proto/auto_plan.h"
 #include "proto/status.h"
 
@@ -191,7 +192,7 @@ absl::StatusOr<JobSpec> replay_spec(const Json& run) {
     return invalid_input("not a run.json that can be replayed: it has no spec and plan");
   ASSIGN_OR_RETURN(JobSpec spec, job_from_json(run["spec"]));
   try {
-    spec.plan = run["plan"].get<std::vector<int64_t>>();
+    spec.plan = integers_of<int64_t>(run["plan"]);
   } catch (const Json::exception& fault) {
     return invalid_input("plan: {}", fault.what());
   }

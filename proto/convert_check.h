@@ -32,6 +32,17 @@ inline absl::Status check_amount(std::string_view field, double value) {
   return absl::OkStatus();
 }
 
+/// What a worker reports of a task is added up over tasks and multiplied: beyond these bounds sums and
+/// products would not be finite, and the server could not say any more what has become of the job. Seconds
+/// and work are far below 1e100; so is a relative variance, s² of floats below 1e77 over 1e-2 in below 1e9
+/// pixels; sums of its squares are below the square of that.
+inline constexpr double kMostReported = 1e100;
+inline absl::Status check_reported(std::string_view field, double value, double most = kMostReported) {
+  if (!(value >= 0 && value <= most))
+    return invalid_input("{}: {} is not a number from 0 to {}", field, value, most);
+  return absl::OkStatus();
+}
+
 template <class Integer>
 absl::Status check_range(std::string_view field, Integer value, Integer least, Integer most) {
   if (value < least || value > most)

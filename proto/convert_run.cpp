@@ -174,18 +174,20 @@ v1::MixCost to_proto(const MixCost& cost) {
 
 absl::StatusOr<MixCost> from_proto(const v1::MixCost& message) {
   RETURN_IF_ERROR(check_range<int64_t>("costs.passes", message.passes(), 0, kMostPasses));
-  RETURN_IF_ERROR(check_amount("costs.cpu_seconds", message.cpu_seconds()));
-  RETURN_IF_ERROR(check_amount("costs.relative_variance", message.relative_variance()));
+  RETURN_IF_ERROR(check_reported("costs.cpu_seconds", message.cpu_seconds()));
+  RETURN_IF_ERROR(check_reported("costs.relative_variance", message.relative_variance()));
   RETURN_IF_ERROR(check_range<int64_t>("costs.pixels", message.pixels(), 0, int64_t{1} << 32));
-  RETURN_IF_ERROR(check_amount("costs.relative_variance_squares", message.relative_variance_squares()));
+  RETURN_IF_ERROR(check_reported("costs.relative_variance_squares", message.relative_variance_squares(),
+                                 kMostReported * kMostReported));
   RETURN_IF_ERROR(check_range<int64_t>("costs.lobed_pixels", message.lobed_pixels(), 0, message.pixels()));
-  RETURN_IF_ERROR(check_amount("costs.work", message.work()));
-  RETURN_IF_ERROR(check_amount("costs.overhead_seconds", message.overhead_seconds()));
+  RETURN_IF_ERROR(check_reported("costs.work", message.work()));
+  RETURN_IF_ERROR(check_reported("costs.overhead_seconds", message.overhead_seconds()));
   RETURN_IF_ERROR(check_range<int64_t>("costs.repilot_passes", message.repilot_passes(), 0, kMostPasses));
-  RETURN_IF_ERROR(check_amount("costs.repilot_seconds", message.repilot_seconds()));
+  RETURN_IF_ERROR(check_reported("costs.repilot_seconds", message.repilot_seconds()));
   RETURN_IF_ERROR(check_count("costs.blocks", message.blocks_size()));
   MixCost cost;
   ASSIGN_OR_RETURN(cost.calibration, from_proto(message.calibration()));
+  RETURN_IF_ERROR(check_reported("costs.calibration.seconds", cost.calibration.seconds));
   cost.passes = message.passes();
   cost.cpu_seconds = message.cpu_seconds();
   cost.rays = message.rays();
@@ -201,8 +203,8 @@ absl::StatusOr<MixCost> from_proto(const v1::MixCost& message) {
   cost.repilot_seconds = message.repilot_seconds();
   cost.candidate = message.candidate();
   for (const v1::BlockCost& block : message.blocks()) {
-    RETURN_IF_ERROR(check_amount("costs.blocks.relative_deviation", block.relative_deviation()));
-    RETURN_IF_ERROR(check_amount("costs.blocks.cpu_seconds", block.cpu_seconds()));
+    RETURN_IF_ERROR(check_reported("costs.blocks.relative_deviation", block.relative_deviation()));
+    RETURN_IF_ERROR(check_reported("costs.blocks.cpu_seconds", block.cpu_seconds()));
     cost.blocks.push_back({block.relative_deviation(), block.cpu_seconds()});
   }
   return cost;

@@ -162,7 +162,7 @@ absl::StatusOr<WorkerState> from_proto(const v1::SyncRequest& message) {
   ASSIGN_OR_RETURN(state.loaded, list_from_proto<LoadedScene>("loaded", message.loaded()));
   state.wanted = message.wanted();
   ASSIGN_OR_RETURN(state.known_jobs, texts_from_proto("known_jobs", message.known_jobs()));
-  RETURN_IF_ERROR(check_amount("process_cpu_seconds", message.process_cpu_seconds()));
+  RETURN_IF_ERROR(check_reported("process_cpu_seconds", message.process_cpu_seconds()));
   state.process_cpu_seconds = message.process_cpu_seconds();
   state.wait_milliseconds = message.wait_milliseconds();
   state.draining = message.draining();

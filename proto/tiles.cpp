@@ -12,4 +12,10 @@ std::vector<PixelRect> tiles_of(const JobSpec& spec) {
   return tiles;
 }
 
+uint64_t tile_count(const JobSpec& spec) {
+  const auto tile = static_cast<uint64_t>(spec.tile);
+  const auto along = [&](int pixels) { return (static_cast<uint64_t>(pixels) + tile - 1) / tile; };
+  return along(spec.crop.width()) * along(spec.crop.height());
+}
+
 }  // namespace penumbra

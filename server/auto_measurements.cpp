@@ -18,7 +18,7 @@ double whole_pass_factor(const JobSpec& spec, const std::vector<PixelRect>& tile
     const MixCost& block = pilot[t][first + static_cast<size_t>(pass.candidate)];
     if (pass.passes < 1 || block.pixels < 1) continue;
     whole += pass.cpu_seconds / static_cast<double>(pass.passes);
-    blocks += block.cpu_seconds / static_cast<double>(block.pixels * block.passes) *
+    blocks += block.cpu_seconds / (static_cast<double>(block.pixels) * static_cast<double>(block.passes)) *
               static_cast<double>(tiles[t].area());
   }
   return std::holds_alternative<CpuSecondsBudget>(spec.budget) && whole > 0 && blocks > 0 ? whole / blocks

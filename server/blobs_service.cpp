@@ -1,12 +1,9 @@
 #include "server/blobs_service.h"
 
-#include <fstream>
-#include <set>
-
-#include "proto/channel.h"
 #include "proto/rpc_status.h"
 
 namespace penumbra {
+<<<<<<< HEAD
 namespace {
 
 constexpr int kMostDigests = 100'000;
@@ -34,51 +31,28 @@ absl::StatusOr<uint64_t> receive(const BlobFolder& blobs, const BlobLimits& limi
 }
 
 }  // namespace
+=======
+>>>>>>> proofs
 
 grpc::Status BlobsService::FindMissing(grpc::ServerContext*, const v1::FindMissingRequest* request,
                                        v1::FindMissingResponse* response) {
-  if (request->digests_size() > kMostDigests)
-    return to_grpc(invalid_input("digests: more than {}", kMostDigests));
-  std::set<std::string> seen;
-  for (const std::string& digest : request->digests()) {
-    if (const absl::Status status = check_digest(digest); !status.ok()) return to_grpc(status);
-    if (!seen.insert(digest).second || blobs_.touch(digest)) continue;
-    v1::FindMissingResponse::Missing* missing = response->add_missing();
-    missing->set_digest(digest);
-    missing->set_partial(blobs_.partial(digest));
-  }
-  return grpc::Status::OK;
+  absl::StatusOr<v1::FindMissingResponse> missing = missing_blobs(blobs_, *request);
+  if (missing.ok()) *response = *std::move(missing);
+  return to_grpc(missing.status());
 }
 
 grpc::Status BlobsService::Upload(grpc::ServerContext*, grpc::ServerReader<v1::UploadChunk>* reader,
                                   v1::UploadResponse* response) {
-  const absl::StatusOr<uint64_t> size = receive(blobs_, limits_, *reader);
+  const absl::StatusOr<uint64_t> size =
+      receive_blob(blobs_, limits_, [&](v1::UploadChunk& chunk) { return reader->Read(&chunk); });
   if (size.ok()) response->set_size(*size);
   return to_grpc(size.status());
 }
 
 grpc::Status BlobsService::Download(grpc::ServerContext*, const v1::DownloadRequest* request,
                                     grpc::ServerWriter<v1::DownloadChunk>* writer) {
-  if (const absl::Status status = check_digest(request->digest()); !status.ok()) return to_grpc(status);
-  std::ifstream in(blobs_.path_of(request->digest()), std::ios::binary | std::ios::ate);
-  if (!in) return grpc::Status(grpc::StatusCode::NOT_FOUND, "no blob " + request->digest());
-  const auto size = static_cast<uint64_t>(in.tellg());
-  if (request->offset() > size) return grpc::Status(grpc::StatusCode::OUT_OF_RANGE, "offset beyond the end");
-  in.seekg(static_cast<std::streamoff>(request->offset()));
-  Sha256 hash;
-  for (uint64_t left = size - request->offset(); left > 0;) {
-    v1::DownloadChunk chunk;
-    chunk.mutable_data()->resize(std::min<uint64_t>(left, kChunkBytes));
-    if (!in.read(chunk.mutable_data()->data(), static_cast<std::streamsize>(chunk.data().size())))
-      return grpc::Status(grpc::StatusCode::DATA_LOSS, "the blob ends early: " + request->digest());
-    left -= chunk.data().size();
-    if (request->offset() == 0) hash.add(chunk.data());
-    if (!writer->Write(chunk)) return grpc::Status(grpc::StatusCode::CANCELLED, "the reader has hung up");
-  }
-  // Whoever gets it will see the same; here the file goes, so that it can be uploaded anew.
-  if (request->offset() == 0 && hash.hex() != request->digest())
-    return to_grpc(blobs_.verify(request->digest()));
-  return grpc::Status::OK;
+  return to_grpc(
+      send_blob(blobs_, *request, [&](const v1::DownloadChunk& chunk) { return writer->Write(chunk); }));
 }
 
 }  // namespace penumbra

@@ -9,11 +9,11 @@
 
 #include "proto/convert.h"
 #include "proto/rpc_status.h"
-#include "scenes/bundle.h"
 #include "server/assembler.h"
 #include "server/caller.h"
 #include "server/frame_stream.h"
 #include "server/job_report.h"
+#include "server/submission.h"
 
 namespace penumbra {
 namespace {
@@ -24,47 +24,12 @@ constexpr double kLeastWatchSeconds = 0.2, kMostWatchSeconds = 5;
 constexpr double kMostQuietSeconds = 5;
 // Frames of one fetch that are kept in memory at a time.
 constexpr uint64_t kAssemblyBytes = uint64_t{1} << 30;
-// More tasks than this mean that the tiles are too small for the picture.
-constexpr uint64_t kMostTiles = uint64_t{1} << 20;
 
 /// Short and printable; needs only to be unlikely to repeat (submit checks the store's).
 JobId new_job_id() {
   std::random_device device;
   const uint64_t bits = (uint64_t{device()} << 32) | device();
   return fmt::format("j{:010x}", bits & 0xff'ffff'ffffu);
-}
-
-/// The bundle's index must be sound and all its blobs here, or a worker would find out much later.
-absl::Status check_bundle(const BlobFolder& blobs, const JobSpec& spec) {
-  const absl::StatusOr<std::string> json = blobs.read(spec.bundle);
-  if (!json.ok())
-    return make_status(absl::StatusCode::kFailedPrecondition, "the bundle's index {} is missing",
-                       spec.bundle);
-  ASSIGN_OR_RETURN(const BundleIndex index, parse_bundle_index(*json));
-  for (const BundleEntry& entry : index.entries) {
-    if (!is_digest(entry.digest)) return invalid_input("bundle: {}: not a digest", entry.name);
-    const auto size = blobs.size(entry.digest);
-    if (!size)
-      return make_status(absl::StatusCode::kFailedPrecondition, "the bundle's blob {} ({}) is missing",
-                         entry.digest, entry.name);
-    if (*size != entry.size)
-      return invalid_input("bundle: {}: the index says {} bytes, the blob has {}", entry.name, entry.size,
-                           *size);
-  }
-  return absl::OkStatus();
-}
-
-absl::StatusOr<JobSpec> checked_spec(const BlobFolder& blobs, const v1::SubmitRequest& request) {
-  if (request.request_id().empty() || request.request_id().size() > 128)
-    return invalid_input("request_id: must have 1 to 128 characters");
-  ASSIGN_OR_RETURN(JobSpec spec, from_proto(request.spec()));
-  const size_t tiles = tiles_of(spec).size();
-  if (tiles > kMostTiles)
-    return invalid_input("tile: {} pixels make more than {} tiles of this picture", spec.tile, kMostTiles);
-  if (!spec.plan.empty())
-    RETURN_IF_ERROR(check_stages(spec, {spec.plan, spec.auto_plans, spec.earlier_plans}));
-  RETURN_IF_ERROR(check_bundle(blobs, spec));
-  return spec;
 }
 
 absl::Status no_job(const JobId& id) {

@@ -2,6 +2,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstddef>
 
 #include "proto/status.h"
@@ -28,6 +29,24 @@ class MemoryFile final : public penumbra::SceneFiles {
   int fd_;
 };
 
+/// So many levels make millions of triangles of one, which tells no more than a few do. More still are
+/// refused.
+bool takes_minutes(const penumbra::ShapeEntity& shape) {
+  constexpr int64_t kFew = 4, kRefused = 14;
+  const int64_t levels = shape.params.integer("levels", shape.params.integer("nlevels", 3));
+  return shape.type == "loopsubdiv" && levels > kFew && levels < kRefused;
+}
+
+bool takes_minutes(const penumbra::SceneDescription& scene) {
+  const auto any = [](const std::vector<penumbra::ShapeEntity>& shapes) {
+    return std::any_of(shapes.begin(), shapes.end(),
+                       [](const penumbra::ShapeEntity& shape) { return takes_minutes(shape); });
+  };
+  return any(scene.shapes) ||
+         std::any_of(scene.objects.begin(), scene.objects.end(),
+                     [&](const penumbra::ObjectEntity& object) { return any(object.shapes); });
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t count) {
@@ -37,6 +56,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t count) {
   if (!scene.ok()) return 0;
   penumbra::needs_of(*scene);
   penumbra::unsupported(*scene);
+  if (takes_minutes(*scene)) return 0;
   if (!penumbra::check_files(*scene, file).ok()) return 0;
   std::vector<std::string> warnings;
   for (const penumbra::ShapeEntity& shape : scene->shapes)

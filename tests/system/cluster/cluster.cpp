@@ -33,6 +33,14 @@ std::string read_text(const std::string& path) {
 
 }  // namespace
 
+double patience() {
+  static const double factor = [] {
+    const char* text = std::getenv("PENUMBRA_PATIENCE");
+    return text == nullptr ? 1 : std::strtod(text, nullptr);
+  }();
+  return factor;
+}
+
 double steady_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -67,7 +75,7 @@ void Process::kill_hard() {
 }
 
 std::optional<int> Process::wait(double seconds) {
-  for (const double end = steady_seconds() + seconds; steady_seconds() < end; nap()) {
+  for (const double end = steady_seconds() + patience() * seconds; steady_seconds() < end; nap()) {
     int status = 0;
     if (waitpid(pid_, &status, WNOHANG) != pid_) continue;
     pid_ = -1;
@@ -83,9 +91,20 @@ Cluster::Cluster(const std::string& name)
   std::filesystem::create_directories(root_);
 }
 
+/// A program that is killed has no exit code to say what a sanitiser has found in it: its log does.
+void Cluster::expect_sound() const {
+  for (const auto& entry : std::filesystem::directory_iterator(root_)) {
+    if (entry.path().extension() != ".log") continue;
+    const std::string log = read_text(entry.path());
+    for (const std::string_view found : {"Sanitizer: ", "runtime error: "})
+      EXPECT_EQ(log.find(found), std::string::npos) << entry.path() << ":\n" << log;
+  }
+}
+
 Cluster::~Cluster() {
   workers_.clear();
   server_.reset();
+  expect_sound();
   if (testing::Test::HasFailure()) std::fprintf(stderr, "%s\n", server_log().c_str());
   std::error_code error;
   std::filesystem::remove_all(root_, error);
@@ -105,14 +124,14 @@ void Cluster::start_server() {
     command.push_back(word);
   command.insert(command.end(), server_flags.begin(), server_flags.end());
   server_ = std::make_unique<Process>(command, path("server.log"));
-  for (const double end = steady_seconds() + 30; !std::filesystem::exists(file); nap())
+  for (const double end = steady_seconds() + patience() * 30; !std::filesystem::exists(file); nap())
     ASSERT_LT(steady_seconds(), end) << server_log();
   std::stringstream(read_text(file)) >> address_;
   const auto channel = *open_channel(address_, credentials);
   render_ = v1::Render::NewStub(channel);
   // The address is written before the first poll, and a channel to a killed predecessor at this address may
   // not have noticed yet: only an answered call says that calls are answered.
-  for (const double end = steady_seconds() + 30;; nap()) {
+  for (const double end = steady_seconds() + patience() * 30;; nap()) {
     grpc::ClientContext context;
     context.set_wait_for_ready(true);
     context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(20));
@@ -209,7 +228,7 @@ JobStatus Cluster::status(const JobId& job) {
 
 JobStatus Cluster::wait_until(const JobId& job, double seconds,
                               const std::function<bool(const JobStatus&)>& wanted) {
-  const double end = steady_seconds() + seconds;
+  const double end = steady_seconds() + patience() * seconds;
   for (;; nap()) {
     JobStatus now = status(job);
     if (wanted(now)) return now;

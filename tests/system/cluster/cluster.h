@@ -82,6 +82,8 @@ class Cluster {
   std::vector<std::string> result_files() const;
 
  private:
+  void expect_sound() const;
+
   std::filesystem::path root_;
   std::string address_;
   std::unique_ptr<Process> server_;
@@ -92,5 +94,8 @@ class Cluster {
 };
 
 double steady_seconds();
+/// What times that a test waits at most are multiplied by: PENUMBRA_PATIENCE, for programs that a sanitiser slows
+/// down; 1 without.
+double patience();
 
 }  // namespace penumbra

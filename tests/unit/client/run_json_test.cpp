@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include "proto/status.h"
 #include "sample_run.h"
@@ -147,6 +148,29 @@ TEST(RunJson, WhatCannotBeReplayedIsSaid) {
   EXPECT_FALSE(replay_spec(json).ok());
   json["spec"]["width"] = "wide";
   EXPECT_EQ(replay_spec(json).status().code(), absl::StatusCode::kInvalidArgument);
+}
+
+TEST(RunJson, NumbersOutOfRangeAreRefused) {
+  const auto refused = [](const char* key, const Json& value) {
+    Json json = run_json(sample_run());
+    json["spec"][key] = value;
+    EXPECT_EQ(replay_spec(json).status().code(), absl::StatusCode::kInvalidArgument) << key << value;
+  };
+  refused("width", 1e300);
+  refused("width", int64_t{1} << 32);
+  refused("max_depth", 1.5);
+  refused("seed", -1);
+  refused("plan", Json{1e300, 1});
+  refused("plan", 3);
+  refused("crop", Json{0, 0, 16});
+  refused("crop", Json{int64_t{std::numeric_limits<int>::min()}, 0, std::numeric_limits<int>::max(), 16});
+  refused("crop", Json{8, 8, 4, 4});  // of a positive area, all the same
+  refused("tile", kMostTile + 1);
+  Json large = run_json(sample_run());
+  for (const char* key : {"width", "height"}) large["spec"][key] = 1 << 30;
+  large["spec"]["crop"] = Json{0, 0, 1 << 30, 1 << 30};
+  large["spec"]["tile"] = 1;  // more tiles than could be listed
+  EXPECT_EQ(replay_spec(large).status().code(), absl::StatusCode::kInvalidArgument);
 }
 
 TEST(ReadJson, NamesTheFile) {

@@ -139,6 +139,24 @@ TEST(Convert, TasksCostsAndReportsComeBack) {
   expect_round_trip(WorkerInfo{"uuid", "host", "avx2", 4});
 }
 
+TEST(Convert, ReportsWhoseSumsWouldNotBeFiniteAreRefused) {
+  const std::vector<std::pair<std::string, std::function<void(v1::MixCost&)>>> faults = {
+      {"cpu_seconds", [](v1::MixCost& c) { c.set_cpu_seconds(1e308); }},
+      {"work", [](v1::MixCost& c) { c.set_work(1e101); }},
+      {"calibration", [](v1::MixCost& c) { c.mutable_calibration()->set_seconds(1e308); }},
+      {"relative_variance_squares", [](v1::MixCost& c) { c.set_relative_variance_squares(1e201); }},
+      {"repilot_seconds", [](v1::MixCost& c) { c.set_repilot_seconds(-1); }},
+  };
+  for (const auto& [field, break_it] : faults) {
+    v1::MixCost message = to_proto(MixCost{8, 0.25, 1000, 20, 1, 3.5, {7, 0.125}, 64, 1e190, 40, 1e9, 0.125});
+    ASSERT_TRUE(from_proto(message).ok());
+    break_it(message);
+    const auto read = from_proto(message);
+    ASSERT_FALSE(read.ok()) << field;
+    EXPECT_NE(message_of(read.status()).find(field), std::string::npos) << read.status();
+  }
+}
+
 TEST(Convert, SummariesComeBack) {
   RunSummary summary;
   summary.spec = full_spec();

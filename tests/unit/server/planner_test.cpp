@@ -35,6 +35,19 @@ TEST(Planner, TilesCoverTheCropOnce) {
       EXPECT_EQ(hits[y * 200 + x], x >= 3 && x < 190 && y >= 5 && y < 149 ? 1 : 0);
 }
 
+TEST(Planner, TilesAreCountedWithoutBeingListed) {
+  JobSpec spec = spec_of(200, 150, {"bsdf"}, SppBudget{1});
+  for (const PixelRect& crop : {PixelRect{0, 0, 200, 150}, PixelRect{3, 5, 190, 149}, PixelRect{7, 7, 8, 8}})
+    for (const int tile : {1, 7, 32, 150, 4096}) {
+      spec.crop = crop;
+      spec.tile = tile;
+      EXPECT_EQ(tile_count(spec), tiles_of(spec).size());
+    }
+  spec = spec_of(65536, 65536, {"bsdf"}, SppBudget{1});
+  spec.tile = 1;
+  EXPECT_EQ(tile_count(spec), uint64_t{1} << 32);
+}
+
 TEST(Planner, OnlyMeasuredBudgetsNeedAPilot) {
   EXPECT_FALSE(needs_pilot(spec_of(8, 8, {"sa"}, SppBudget{4})));
   EXPECT_TRUE(needs_pilot(spec_of(8, 8, {"sa"}, CpuSecondsBudget{4})));
