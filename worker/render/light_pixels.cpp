@@ -88,7 +88,7 @@ std::vector<uint8_t> light_pixels(const Scene& scene, const Camera& camera, cons
   std::vector<uint8_t> marks(size_t(tile.area()), 0);
   if (scene.lights.area.size() > kMostProjectedLights) return marks;
   for (const AreaEmitter& emitter : scene.lights.area) {
-    if (emitter.invisible) continue;
+    if (emitter.invisible || emitter.motion) continue;  // what moves is nowhere for long
     const TriangleMesh& mesh = scene.meshes[emitter.mesh].mesh;
     for (uint32_t t = emitter.first_primitive; t < emitter.first_primitive + emitter.primitives; ++t) {
       const uint32_t* i = &mesh.indices[size_t{t} * 3];
