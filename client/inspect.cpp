@@ -19,6 +19,7 @@
 #include "scenes/mesh.h"
 #include "scenes/needs.h"
 #include "scenes/parser.h"
+#include "scenes/substitutes.h"
 
 namespace penumbra {
 namespace {
@@ -92,6 +93,7 @@ absl::StatusOr<Inspection> inspect(const std::string& path) {
   out.warnings = warnings_of(scene, out.defaults);
   for (const MaterialEntity& material : scene.materials) RETURN_IF_ERROR(check_hair(material, scene));
   const FolderFiles files(std::filesystem::path(path).parent_path());
+  for (std::string& warning : substitutes(scene, files)) out.warnings.push_back(std::move(warning));
   ASSIGN_OR_RETURN(out.counts, count(scene, files, out.warnings));
   out.needs = needs_of(scene);
   return out;

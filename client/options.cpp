@@ -132,6 +132,7 @@ void add_job_options(CLI::App& app, JobOptions& o) {
          "lights. "
          "Last, where the camera has a lens: /lens=point (default) or /lens=line, chords of it. "
          "Last, where something moves: /motion=point (default) or /motion=line, intervals of time. "
+         "Last, for a pinhole: /pixel=point (default) or /pixel=line, lines across the pixel. "
          "Or auto, alone: the planner chooses for each tile. "
          "Default: the scene's Integrator \"pointline\", else auto")
       ->type_name("MIX")

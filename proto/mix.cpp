@@ -115,7 +115,8 @@ absl::Status parse_combination(std::string_view word, Mix& mix) {
     return fault(
         word,
         "unknown combination; there are balance, free, power, average, smooth=WIDTH|auto, "
-        "smooth-ease=WIDTH|auto, and after it lens=point|line, medium=point|line and motion=point|line");
+        "smooth-ease=WIDTH|auto, and after it lens=point|line, medium=point|line, motion=point|line "
+        "and pixel=point|line");
   }
   return absl::OkStatus();
 }
@@ -131,7 +132,9 @@ constexpr EffectWord kEffectWords[] = {
     {"medium=", "media are lit by medium=point or medium=line",
      [](Mix& mix, bool line) { mix.medium = line ? MediumSampling::kLine : MediumSampling::kPoint; }},
     {"motion=", "motion is sampled by motion=point or motion=line",
-     [](Mix& mix, bool line) { mix.motion = line ? MotionSampling::kLine : MotionSampling::kPoint; }}};
+     [](Mix& mix, bool line) { mix.motion = line ? MotionSampling::kLine : MotionSampling::kPoint; }},
+    {"pixel=", "pixels are sampled by pixel=point or pixel=line",
+     [](Mix& mix, bool line) { mix.pixel = line ? PixelSampling::kLine : PixelSampling::kPoint; }}};
 
 /// Reads one of kEffectWords, none of which may stand twice; `said`: those that did. False: another word.
 absl::StatusOr<bool> parse_effect(std::string_view word, Mix& mix, std::set<std::string_view>& said) {
@@ -155,11 +158,11 @@ absl::Status parse_rest(std::string_view rest, Mix& mix) {
     rest.remove_prefix(slash);
     ASSIGN_OR_RETURN(const bool effect, parse_effect(word, mix, effects));
     if (effect) continue;
-    if (!effects.empty()) return fault(word, "lens=, medium= and motion= must stand last");
+    if (!effects.empty()) return fault(word, "lens=, medium=, motion= and pixel= must stand last");
     if (!first)
       return fault(word,
-                   "after the combination there is only lens=point|line, medium=point|line and "
-                   "motion=point|line");
+                   "after the combination there is only lens=point|line, medium=point|line, "
+                   "motion=point|line and pixel=point|line");
     RETURN_IF_ERROR(parse_combination(word, mix));
   }
   return absl::OkStatus();
@@ -262,9 +265,10 @@ std::string label(const Mix& mix) {
   std::string out;
   for (const StrategyCount& s : mix.strategies)
     out += fmt::format("{}{}:{}", out.empty() ? "" : "+", name_of(s), s.count);
-  return fmt::format("{}/{}{}{}{}", out, name_of(mix), mix.lens == LensSampling::kLine ? "/lens=line" : "",
+  return fmt::format("{}/{}{}{}{}{}", out, name_of(mix), mix.lens == LensSampling::kLine ? "/lens=line" : "",
                      mix.medium == MediumSampling::kLine ? "/medium=line" : "",
-                     mix.motion == MotionSampling::kLine ? "/motion=line" : "");
+                     mix.motion == MotionSampling::kLine ? "/motion=line" : "",
+                     mix.pixel == PixelSampling::kLine ? "/pixel=line" : "");
 }
 
 std::vector<std::string> labels(const std::vector<Mix>& mixes) {

@@ -47,6 +47,10 @@ enum class LensSampling { kPoint, kLine };
 /// intervals of time in which a camera ray sees one thing, which are known. Nothing where nothing moves.
 enum class MotionSampling { kPoint, kLine };
 
+/// How what a pixel covers is sampled: by points of the film, or by lines across the pixel, along which what a
+/// pinhole sees is known (curves as well). Nothing where there is a lens, or something moves.
+enum class PixelSampling { kPoint, kLine };
+
 struct Mix {
   bool automatic = false;  ///< `auto`: the planner chooses per tile; then strategies is empty
   std::vector<StrategyCount> strategies;
@@ -56,17 +60,18 @@ struct Mix {
   MediumSampling medium = MediumSampling::kPoint;
   LensSampling lens = LensSampling::kPoint;
   MotionSampling motion = MotionSampling::kPoint;
+  PixelSampling pixel = PixelSampling::kPoint;
   bool operator==(const Mix&) const = default;
 
   int samples() const;  ///< light samples per shading point and light
 };
 
 /// Reads the grammar of interface.md: strategy[:count] joined by `+`, then /combination, then
-/// /lens=point|line, /medium=point|line and /motion=point|line. InvalidArgument names the word at fault.
+/// /lens=point|line, /medium=point|line, /motion=point|line and /pixel=point|line. InvalidArgument names the word at fault.
 absl::StatusOr<Mix> parse_mix(std::string_view text);
 
-/// The normal form: counts and combination always written, lens=line, medium=line and
-/// motion=line where it is so. parse_mix(label(m)) == m.
+/// The normal form: counts and combination always written, lens=line, medium=line, motion=line and
+/// pixel=line where it is so. parse_mix(label(m)) == m.
 std::string label(const Mix& mix);
 
 /// Labels of a job's mixes; a repeated mix gets `#2`, `#3`, …

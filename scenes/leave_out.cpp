@@ -36,7 +36,6 @@ bool is_bump(const Param& param) {
 }
 
 void lens(Scene& scene) {
-  if (scene.camera.type == "realistic") scene.camera.type = "perspective";
   std::erase_if(scene.camera.params.all, [](const Param& p) { return p.name == "lensradius"; });
 }
 

@@ -15,7 +15,7 @@ using Why = std::optional<std::string>;
 
 Why lens(const Scene& scene) {
   const Entity& camera = scene.camera;
-  if (camera.type == "realistic") return fmt::format("realistic camera at {}", scene.place(camera.loc));
+  if (camera.type == "realistic") return {};  // a pinhole stands in for it
   const double radius = camera.params.number("lensradius", 0);
   if (!(radius > 0)) return {};
   return fmt::format("lensradius {} at {}", radius, scene.place(camera.params.find("lensradius")->loc));

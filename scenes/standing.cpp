@@ -44,7 +44,7 @@ bool anything_moves(const SceneDescription& description) {
 }
 
 bool can_move(const ShapeEntity& shape) {
-  return shape.area_light < 0 && !bounds_a_medium(shape) && !has_tubes(shape);
+  return !bounds_a_medium(shape) && !has_tubes(shape);
 }
 
 bool can_move(const InstanceEntity& instance, const SceneDescription& description) {

@@ -9,7 +9,7 @@ namespace penumbra {
 bool anything_moves(const SceneDescription& description);
 
 /// Can its motion be rendered? Not that of boundaries of media or of curves that are tubes (nor of instances
-/// of such), nor of what emits, nor within an object.
+/// of such), nor within an object. What emits goes on to emit (in pbrt it does not).
 bool can_move(const ShapeEntity& shape);
 bool can_move(const InstanceEntity& instance, const SceneDescription& description);
 

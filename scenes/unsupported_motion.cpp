@@ -26,12 +26,11 @@ struct Standing {
 void add_unsupported_motion(const SceneDescription& scene, std::vector<std::string>& out) {
   const Shutter shutter = shutter_of(scene);
   if (!(shutter.open < shutter.close)) return;
-  Standing lights{"an area light"}, boundaries{"a boundary of a medium"}, curves{"a curve"},
-      inner{"a shape inside an object"};
+  Standing boundaries{"a boundary of a medium"}, curves{"a curve"}, inner{"a shape inside an object"};
   Standing others{"a light", "at its first transform, as in pbrt"};
   for (const ShapeEntity& shape : scene.shapes) {
     if (!shape.placement.moving() || can_move(shape)) continue;
-    (shape.area_light >= 0 ? lights : has_tubes(shape) ? curves : boundaries).add(shape.loc);
+    (has_tubes(shape) ? curves : boundaries).add(shape.loc);
   }
   for (const InstanceEntity& instance : scene.instances) {
     if (!instance.placement.moving() || instance.object < 0 || can_move(instance, scene)) continue;
@@ -43,7 +42,7 @@ void add_unsupported_motion(const SceneDescription& scene, std::vector<std::stri
       if (shape.placement.moving()) inner.add(shape.loc);
   for (const LightEntity& light : scene.lights)
     if (light.placement.moving()) others.add(light.loc);
-  for (const Standing& kind : {lights, boundaries, curves, inner, others})
+  for (const Standing& kind : {boundaries, curves, inner, others})
     if (kind.count > 0)
       out.push_back(fmt::format("{}: motion of {} is not supported: {} stand{} {}", scene.place(kind.first),
                                 kind.what, kind.count, kind.count == 1 ? "s" : "", kind.how));

@@ -30,8 +30,7 @@ absl::StatusOr<Effects> build_effects(const SceneDescription& description) {
     return std::any_of(needs.begin(), needs.end(), [&](const Need& need) { return need.effect == effect; });
   };
   Effects effects;
-  // A realistic camera calls for a lens too, but what stands in for it is a pinhole.
-  if (needed("lens") && description.camera.params.number("lensradius", 0) > 0) {
+  if (needed("lens")) {
     ASSIGN_OR_RETURN(const SceneDescription still, camera_standing(description));
     ASSIGN_OR_RETURN(Lens lens, Lens::build(still));
     effects.camera = std::make_shared<const Lens>(std::move(lens));

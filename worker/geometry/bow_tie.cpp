@@ -79,7 +79,7 @@ int cut_by_triangle(const BowTie& tie, const Vec3f p[3], CutPiece pieces[2]) {
     const double lo = std::max(std::min(v1, v2), 0.), hi = std::min(std::max(v1, v2), 1.);
     if (lo < hi) pieces[n++] = {lo, hi, start, slope, beyond};
   };
-  if (near.k > 0) add(near.r / near.k, far.k > 0 ? far.r / far.k : turn, false);
+  if (near.k > 0 && !tie.from_focus) add(near.r / near.k, far.k > 0 ? far.r / far.k : turn, false);
   if (far.k < 0) add(near.k < 0 ? near.r / near.k : -turn, far.r / far.k, true);
   return n;
 }

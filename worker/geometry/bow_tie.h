@@ -17,6 +17,7 @@ namespace penumbra {
 struct BowTie {
   Vec3d focus;
   Vec3d side, r, k;        ///< functionals of p − focus: distance from the plane (in any unit), r and k
+  bool from_focus = false;  ///< what lies before the focus does not count
   bool degenerate = true;  ///< the chord is seen end on from the focus, or numbers would overflow
 };
 

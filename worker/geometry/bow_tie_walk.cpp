@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "worker/geometry/bow_tie.h"
 #include "worker/geometry/lower_envelope.h"
+#include "worker/geometry/tube.h"
 
 namespace penumbra {
 namespace {
@@ -39,6 +41,9 @@ Range chord_range(double r_lo, double r_hi, double k_lo, double k_hi) {
   return {r_lo / (r_lo > 0 ? k_hi : k_lo), r_hi / (r_hi > 0 ? k_lo : k_hi)};
 }
 
+/// Labels of tubes' segments have this in the instance's place.
+constexpr uint32_t kTubeLabel = kNone - 1;
+
 /// Something to visit, no nearer than depth k, over a part of the chord.
 struct Visit {
   double k;
@@ -52,22 +57,62 @@ class BowTieWalk {
   BowTieWalk(const LineBvh& bvh, LowerEnvelope& envelope, QueryCounters& counters)
       : bvh_(bvh), envelope_(envelope), counters_(counters) {}
 
-  void run(const Vec3d& a, const Vec3d& b, const Vec3d& focus, float time) {
-    triangles(bvh_.world, make_bow_tie(a, b, focus), kNone);
+  void run(const FocusedChord& chord) {
+    const auto& [a, b, focus, time, from_focus] = chord;
+    from_focus_ = from_focus;
+    const BowTie tie = bow_tie(a, b, focus);
+    triangles(bvh_.world, tie, kNone);
+    if (from_focus && !bvh_.tubes.tree.nodes.empty()) tubes(chord, tie);
     if (bvh_.instance_tree.nodes.empty()) return;
-    walk(bvh_.instance_tree, make_bow_tie(a, b, focus), [&](uint32_t number) {
+    walk(bvh_.instance_tree, tie, [&](uint32_t number) {
       // v and k are the same in every affine frame.
       const LineInstance& placed = bvh_.instances[number];
       Vec3d oa, ob, of;
-      const Matrix& to_object = placed.to_object_at(time);
-      to_object.multVecMatrix(a, oa);
-      to_object.multVecMatrix(b, ob);
-      to_object.multVecMatrix(focus, of);
-      triangles(bvh_.objects[placed.tree], make_bow_tie(oa, ob, of), number);
+      const Matrix& to_object = placed.to_object_at(chord.time);
+      to_object.multVecMatrix(chord.a, oa);
+      to_object.multVecMatrix(chord.b, ob);
+      to_object.multVecMatrix(chord.focus, of);
+      triangles(bvh_.objects[placed.tree], bow_tie(oa, ob, of), number);
     });
   }
 
  private:
+  BowTie bow_tie(const Vec3d& a, const Vec3d& b, const Vec3d& focus) const {
+    BowTie tie = make_bow_tie(a, b, focus);
+    tie.from_focus = from_focus_;
+    return tie;
+  }
+
+  /// What a segment covers is known as of a fan that reaches past all of them; how deep it lies, between its
+  /// ends, as if it were straight in (v, 1/k).
+  void tubes(const FocusedChord& chord, const BowTie& tie) {
+    const Vec3d to_a = chord.focus - chord.a, to_b = chord.focus - chord.b;
+    // The fan's rays are no shorter than the distance of the chord's line, which the shorter of the two is
+    // next to for anything as narrow as a pixel; four times that reach for the rest.
+    const double nearest = std::min(to_a.length(), to_b.length());
+    const double far = 4 * bvh_.tubes.tree.reach(chord.focus) / nearest;
+    const TubeFan fan(chord.focus, to_a * far, to_b * far);
+    walk(bvh_.tubes.tree, tie, [&](uint32_t number) {
+      ++counters_.triangles_tested;
+      const TubeSegment segment(bvh_.tubes.segments[number]);
+      const Interval covered = hidden_by_tube(fan, segment);
+      if (!(covered.lo < covered.hi)) return;
+      const auto inverse_depth = [&](double v) {
+        const Vec3d d = to_a + v * (to_b - to_a), from = segment.c - chord.focus;
+        // The axis' point nearest to the ray's line.
+        const Vec3d across = segment.e - d * (segment.e.dot(d) / d.length2());
+        const Vec3d off = from - d * (from.dot(d) / d.length2());
+        const double w = across.length2() > 0 ? std::clamp(-off.dot(across) / across.length2(), 0., 1.) : 0;
+        const double t = (from + w * segment.e).dot(d) / d.length2();
+        return t > 0 ? -1 / t : -std::numeric_limits<double>::max();
+      };
+      const double lo = covered.lo, hi = covered.hi, at_lo = inverse_depth(lo), at_hi = inverse_depth(hi);
+      const double slope = (at_hi - at_lo) / (hi - lo);
+      if (std::isfinite(slope))
+        envelope_.insert({lo, hi, at_lo - slope * lo, slope, true}, {kTubeLabel, number});
+    });
+  }
+
   void triangles(const LineTree& tree, const BowTie& tie, uint32_t instance) {
     if (tree.nodes.empty()) return;
     walk(tree, tie, [&](uint32_t block) { test(tree.blocks[block], tie, instance); });
@@ -87,7 +132,7 @@ class BowTieWalk {
   void walk(const LineTree& tree, const BowTie& tie, UseLeaf use) {
     if (tie.degenerate) return;
     std::vector<Visit> stack;
-    stack.push_back({1, {0, 1}, 0, false});
+    stack.push_back({tie.from_focus ? 0. : 1., {0, 1}, 0, false});
     while (!stack.empty()) {
       const Visit visit = stack.back();
       stack.pop_back();
@@ -110,7 +155,8 @@ class BowTieWalk {
     for (int lane = 0; lane < kWidth; ++lane) {
       if (side.lo[lane] > 0 || side.hi[lane] < 0) continue;
       // Between chord and focus r and s are positive and k below 1, beyond it r and s are negative.
-      const bool before = r.hi[lane] >= 0 && s.hi[lane] >= 0 && k.hi[lane] >= 0 && k.lo[lane] <= 1;
+      const bool before =
+          !tie.from_focus && r.hi[lane] >= 0 && s.hi[lane] >= 0 && k.hi[lane] >= 0 && k.lo[lane] <= 1;
       const bool beyond = r.lo[lane] <= 0 && s.lo[lane] <= 0 && k.lo[lane] <= 0;
       if (!before && !beyond) continue;
       if (!(node.lo[0][lane] <= node.hi[0][lane])) continue;  // an unused lane
@@ -125,10 +171,16 @@ class BowTieWalk {
   const LineBvh& bvh_;
   LowerEnvelope& envelope_;
   QueryCounters& counters_;
+  bool from_focus_ = false;
 };
 
 PrimitiveId id_of(const LineBvh& bvh, const PieceLabel& label) {
   if (label == kNothingThere) return {};
+  if (label.instance == kTubeLabel) {
+    const auto& starts = bvh.tubes.first_segment;
+    const auto mesh = std::upper_bound(starts.begin(), starts.end(), label.triangle) - 1;
+    return {kNone, bvh.tubes.meshes[size_t(mesh - starts.begin())], label.triangle - *mesh};
+  }
   const auto& first = bvh.first_triangle;
   const auto mesh =
       uint32_t(std::upper_bound(first.begin(), first.end(), label.triangle) - first.begin() - 1);
@@ -142,7 +194,7 @@ void nearest_along(const LineBvh& bvh, const FocusedChord& chord, std::vector<Se
   ++counters.line_queries;
   thread_local LowerEnvelope envelope;
   envelope.reset();
-  BowTieWalk(bvh, envelope, counters).run(chord.a, chord.b, chord.focus, chord.time);
+  BowTieWalk(bvh, envelope, counters).run(chord);
   seen_of(bvh, envelope, out);
 }
 

@@ -101,6 +101,8 @@ struct LightPlace {
 struct FocusedChord {
   Vec3d a, b, focus;
   float time = 0;  ///< as a ray's
+  /// The rays begin at the focus: what lies between it and the chord is not met.
+  bool from_focus = false;
 };
 
 /// One ray at all times of the shutter, carried along by the camera if that moves.
@@ -177,7 +179,7 @@ class Geometry {
   bool occluded(const Shaft& shaft, const Vec3f& x, const LightEnd& y, QueryCounters& counters) const;
 
   /// The nearest surface along the rays of a focused chord: ascending intervals that cover [0,1]. Opaque
-  /// meshes only, and to within double precision: where the answer decides what is looked at, a ray must
+  /// meshes only, tubes only of rays that begin at the focus, and to within double precision: where the answer decides what is looked at, a ray must
   /// still look. One interval of nothing for a chord seen end on from the focus.
   void nearest(const FocusedChord& chord, std::vector<SeenInterval>& out, QueryCounters& counters) const;
 

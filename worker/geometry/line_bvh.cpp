@@ -91,6 +91,8 @@ absl::Status build_tubes(std::span<const MeshInput> meshes, TreeBuilder& builder
   std::vector<Box> boxes;
   for (const MeshInput& input : meshes) {
     if (input.tubes == nullptr || !input.visible) continue;
+    tubes.meshes.push_back(static_cast<uint32_t>(&input - meshes.data()));
+    tubes.first_segment.push_back(static_cast<uint32_t>(tubes.segments.size()));
     for (const uint32_t first : input.tubes->segments) {
       const Imath::V4f* p = &input.tubes->points[first];
       Box box = empty_box();

@@ -55,6 +55,7 @@ struct LineInstance {
 struct LineTubes {
   LineTree tree;
   std::vector<const Imath::V4f*> segments;  ///< the two points of each begin here
+  std::vector<uint32_t> meshes, first_segment;  ///< the meshes that they are of, in order, and where each begins
 };
 
 struct LineBvh {

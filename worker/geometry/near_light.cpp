@@ -45,12 +45,13 @@ void approach_filter(const RTCFilterFunctionNArguments* arguments) {
   if (ray.tfar < LightApproach::kJudged) return;  // the ray's tfar is the hit's distance here
   const LightEnd& end = *context.end;
   const bool placed = hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
-  if (!placed && hit.geomID == end.light.mesh && hit.primID - end.light.primitive < end.light_primitives) {
+  const Surfaces& all = *context.surfaces;
+  const auto instance = placed ? hit.instID[0] - static_cast<uint32_t>(all.meshes.size()) : kNone;
+  if (instance == end.light.instance && hit.geomID == end.light.mesh &&
+      hit.primID - end.light.primitive < end.light_primitives) {
     arguments->valid[0] = 0;
     return;
   }
-  const Surfaces& all = *context.surfaces;
-  const auto instance = placed ? hit.instID[0] - static_cast<uint32_t>(all.meshes.size()) : kNone;
   const PrimitiveId id{instance, hit.geomID, hit.primID};
   if (all.is_tube(id)) {
     if (!meets(all.segment(id), Vec3d(ray.org_x, ray.org_y, ray.org_z), end.p)) arguments->valid[0] = 0;

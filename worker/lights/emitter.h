@@ -3,12 +3,15 @@
 // emitter is a shape, its radiance, and the primitives that are its surface; two-sided lights are two
 // emitters back to back, so that every emitter has one side.
 #include <cstdint>
+#include <memory>
 #include <variant>
 
 #include "scenes/math.h"
 #include "worker/lights/shape.h"
 
 namespace penumbra {
+
+struct LightMotion;  // moving_light.h
 
 struct AreaEmitter {
   LightShape shape;
@@ -23,6 +26,11 @@ struct AreaEmitter {
   bool crowded = true;
   /// Its surface is not there for rays (`"float alpha" 0`): a material's direction cannot meet it.
   bool invisible = false;
+  /// It moves: `shape` is where it is when the shutter opens; moving_light.h says where else. Null: it
+  /// stands.
+  std::shared_ptr<const LightMotion> motion = nullptr;
+  /// Of one that moves: the geometry's instance that carries its mesh. All ones: it is in the world.
+  uint32_t instance = ~uint32_t{0};
 };
 
 /// Unit normal of the emission side at a point of the shape.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "proto/status.h"
+#include "scenes/substitutes.h"
 #include "worker/textures/image_file.h"
 #include "worker/textures/named_spectra.h"
 
@@ -20,7 +21,10 @@ bool is_one_of(std::string_view word, std::initializer_list<std::string_view> wo
 }  // namespace
 
 absl::Status MaterialBuilder::complain(const FileLoc& loc, const std::string& message) {
-  std::string text = fmt::format("{}: {}", description_.place(loc), message);
+  return complain(fmt::format("{}: {}", description_.place(loc), message));
+}
+
+absl::Status MaterialBuilder::complain(std::string text) {
   if (strict_) return absl::InvalidArgumentError(text);
   warnings_.push_back(std::move(text));
   return absl::OkStatus();
@@ -116,8 +120,7 @@ absl::StatusOr<std::shared_ptr<const Image>> MaterialBuilder::normal_map(const M
   const absl::StatusOr<Texels> texels =
       path.ok() ? read_image(*path, false, Encoding{Encoding::kLinear}) : path.status();
   if (texels.ok()) return std::make_shared<const Image>(*texels);
-  RETURN_IF_ERROR(complain(param->loc, fmt::format("normal map '{}' cannot be read ({}): none instead", name,
-                                                   message_of(texels.status()))));
+  RETURN_IF_ERROR(complain(missing_normal_map_text(*param, message_of(texels.status()), description_)));
   return nullptr;
 }
 

@@ -49,6 +49,7 @@ class MaterialBuilder {
   absl::StatusOr<int> material_named(const MaterialEntity& entity, const std::string& name);
   /// With strict the message as an error, else a warning and OK.
   absl::Status complain(const FileLoc& loc, const std::string& message);
+  absl::Status complain(std::string text);
 
   const SceneDescription& description_;
   const SceneFiles& files_;

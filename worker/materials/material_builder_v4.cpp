@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "proto/status.h"
+#include "scenes/substitutes.h"
 #include "worker/materials/material_builder.h"
 #include "worker/textures/named_spectra.h"
 
@@ -66,33 +67,16 @@ MaterialBuilder::Built MaterialBuilder::diffuse_transmission(const MaterialEntit
 
 MaterialBuilder::Built MaterialBuilder::build_nearest(const MaterialEntity& entity) {
   const std::string& type = entity.type;
-  const auto is = [&](std::initializer_list<std::string_view> types) {
-    return std::find(types.begin(), types.end(), type) != types.end();
-  };
-  const auto nearest = [&](const char* substitute) {
-    return complain(entity.loc, fmt::format("material '{}' is not supported: {} instead", type, substitute));
-  };
-  if (type == "disney") {
-    RETURN_IF_ERROR(nearest("substrate"));
+  const std::string_view substitute = substitute_of(type);
+  if (substitute.empty())
+    return invalid_input("{}: unknown material '{}'", description_.place(entity.loc), type);
+  RETURN_IF_ERROR(complain(substitution_text(entity, description_)));
+  if (substitute == "substrate") {  // disney
     ASSIGN_OR_RETURN(const RgbValue kd, color(entity, "color", Rgb(0.5f)));
     ASSIGN_OR_RETURN(const Roughness rough, roughness(entity, 0.5f, Remap::kV4, Smooth::kNever));
     return SubstrateMaterial{kd, {Rgb(0.04f)}, rough};
   }
-  if (type == "kdsubsurface") {
-    RETURN_IF_ERROR(nearest("matte"));
-    return matte(entity, "Kd", 0.5f);
-  }
-  if (type == "subsurface") {
-    RETURN_IF_ERROR(nearest("matte"));
-    return matte(entity, "reflectance", 0.5f);
-  }
-  // fourier, measured: tables; the rest: pbrt-v1's own names.
-  if (is({"fourier", "measured", "debug", "bluepaint", "brushedmetal", "clay", "felt", "primer", "shinymetal",
-          "skin"})) {
-    RETURN_IF_ERROR(nearest("matte"));
-    return matte(entity, "Kd", 0.5f);
-  }
-  return invalid_input("{}: unknown material '{}'", description_.place(entity.loc), type);
+  return matte(entity, type == "subsurface" ? "reflectance" : "Kd", 0.5f);
 }
 
 }  // namespace penumbra

@@ -59,7 +59,7 @@ absl::StatusOr<Camera> Camera::build(const SceneDescription& description, int wi
 }
 
 Vec3f Camera::direction_at(const Vec2d& pixel) const {
-  return Vec3f((corner_ + right_ * pixel.x + down_ * pixel.y).normalized());
+  return Vec3f(towards(pixel).normalized());
 }
 
 CameraRay Camera::ray(const Vec2d& pixel) const {

@@ -22,6 +22,10 @@ class Camera {
   /// Ray through a point of the image, in pixels from the upper left corner.
   CameraRay ray(const Vec2d& pixel) const;
 
+  /// The pinhole, and from there a point of what the ray sees; linear in the pixel. World space.
+  const Vec3d& pinhole() const { return origin_; }
+  Vec3d towards(const Vec2d& pixel) const { return corner_ + right_ * pixel.x + down_ * pixel.y; }
+
   /// Extent in camera space of a pixel at depth 1.
   Vec2d pixel_size() const { return pixel_size_; }
 

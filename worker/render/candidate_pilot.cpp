@@ -126,9 +126,12 @@ bool is_at_hand(const LightSet& lights) {
 bool fits(const Mix& mix, const Scene& scene) {
   if (mix.medium == MediumSampling::kLine && !(scene.effects.media && is_at_hand(scene.lights))) return false;
   const std::vector<AreaEmitter>& area = scene.lights.area;
+  const std::vector<Environment>& skies = scene.lights.environments;
   return std::all_of(mix.strategies.begin(), mix.strategies.end(), [&](const StrategyCount& wanted) {
     return !is_line(wanted.kind) || std::any_of(area.begin(), area.end(), [&](const AreaEmitter& e) {
       return is_line(fit(wanted, e));
+    }) || std::any_of(skies.begin(), skies.end(), [&](const Environment& e) {
+      return is_line(fit_environment(wanted, e, false));
     });
   });
 }

@@ -64,6 +64,17 @@ double Filter::Axis::sample(double u, double& weight) const {
   return -radius + (double(i) + t) * step;
 }
 
+double Filter::Axis::place_of(double offset) const {
+  if (!(radius > 0)) return 0.5;
+  const double along = std::clamp((offset + radius) / (2 * radius), 0.0, 1.0);
+  if (values.empty()) return along;
+  const double knots = double(values.size() - 1), at = along * knots;
+  const size_t i = std::min(size_t(at), values.size() - 2);
+  const double t = at - double(i), step = 2 * radius / knots;
+  const double a = std::abs(values[i]), b = std::abs(values[i + 1]);
+  return std::min((sums[i] + step * t * (a + (b - a) * t / 2)) / sums.back(), 1.0);
+}
+
 Filter Filter::centre() {
   Filter filter;
   for (Axis& axis : filter.axes_) axis.radius = 0;

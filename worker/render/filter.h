@@ -26,6 +26,9 @@ class Filter {
   static Filter centre();
 
   FilterSample sample(const Vec2d& u) const;
+  /// Along one axis, 0 or 1: the offset at u, whose weight multiplies `weight`; and the u of an offset.
+  double sample_along(int axis, double u, double& weight) const { return axes_[axis].sample(u, weight); }
+  double place_of(int axis, double offset) const { return axes_[axis].place_of(offset); }
   Vec2d radius() const { return {axes_[0].radius, axes_[1].radius}; }
 
  private:
@@ -36,6 +39,8 @@ class Filter {
     std::vector<double> sums;     ///< ∫|f| up to a knot
     double sign_ratio = 1;        ///< ∫|f| / ∫f
     double sample(double u, double& weight) const;
+    /// The inverse of sample().
+    double place_of(double offset) const;
   };
   template <class F>
   static Axis tabulate(double radius, F f);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "worker/lights/moving_light.h"
 #include "worker/render/camera_stage.h"
 
 namespace penumbra {
@@ -73,13 +74,45 @@ void mark(const Outline& outline, const Vec2d& radius, const PixelRect& tile, st
         marks[size_t(y - tile.y0) * tile.width() + x - tile.x0] = 1;
 }
 
-/// How far from its projection the light may leave a trace: the filter's radius, and the blur of what is between the
-/// depths of the outline, which is largest at one of them (a lens focuses at one depth and blurs more either way).
+/// How far from its projection the light may leave a trace: the filter's radius, and the blur of what is
+/// between the depths of the outline, which is largest at one of them (a lens focuses at one depth and blurs
+/// more either way).
 Vec2d reach(const Scene& scene, const Camera& camera, const Outline& outline) {
   const Vec2d filter = scene.filter->radius();
   const CameraStage* stage = scene.effects.camera.get();
   if (!stage) return filter;
-  return filter + Vec2d(std::max(stage->blur(outline.nearest), stage->blur(outline.farthest))) / camera.pixel_size();
+  return filter +
+         Vec2d(std::max(stage->blur(outline.nearest), stage->blur(outline.farthest))) / camera.pixel_size();
+}
+
+/// The sides of a box, two triangles each.
+template <class Use>
+void each_side(const Imath::Box3d& box, const Use& use) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double at : {box.min[axis], box.max[axis]}) {
+      const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+      Vec3d corners[4];
+      for (int c = 0; c < 4; ++c) {
+        corners[c][axis] = at;
+        corners[c][u] = c == 1 || c == 2 ? box.max[u] : box.min[u];
+        corners[c][v] = c >= 2 ? box.max[v] : box.min[v];
+      }
+      use({corners[0], corners[1], corners[2]});
+      use({corners[0], corners[2], corners[3]});
+    }
+}
+
+/// A light that moves: wherever it is while the shutter is open it lies within two boxes that follow each
+/// other.
+template <class Use>
+void each_place(const LightMotion& motion, const Use& use) {
+  const LightBounds object = bounds_of(AreaEmitter{motion.in_object, Rgb(0)});
+  const std::vector<MovedBox> boxes = motion.to_world.boxes({object.lo, object.hi});
+  for (size_t i = 1; i < boxes.size(); ++i) {
+    Imath::Box3d both(boxes[i - 1].lo, boxes[i - 1].hi);
+    both.extendBy(Imath::Box3d(boxes[i].lo, boxes[i].hi));
+    each_side(both, use);
+  }
 }
 
 }  // namespace
@@ -87,15 +120,22 @@ Vec2d reach(const Scene& scene, const Camera& camera, const Outline& outline) {
 std::vector<uint8_t> light_pixels(const Scene& scene, const Camera& camera, const PixelRect& tile) {
   std::vector<uint8_t> marks(size_t(tile.area()), 0);
   if (scene.lights.area.size() > kMostProjectedLights) return marks;
+  const auto mark_triangle = [&](const Vec3d(&triangle)[3]) {
+    const Outline outline = project(camera, triangle);
+    if (outline.count > 0) mark(outline, reach(scene, camera, outline), tile, marks);
+  };
   for (const AreaEmitter& emitter : scene.lights.area) {
     if (emitter.invisible) continue;
+    if (emitter.motion) {
+      each_place(*emitter.motion, mark_triangle);
+      continue;
+    }
     const TriangleMesh& mesh = scene.meshes[emitter.mesh].mesh;
     for (uint32_t t = emitter.first_primitive; t < emitter.first_primitive + emitter.primitives; ++t) {
       const uint32_t* i = &mesh.indices[size_t{t} * 3];
       const Vec3d triangle[3] = {Vec3d(mesh.positions[i[0]]), Vec3d(mesh.positions[i[1]]),
                                  Vec3d(mesh.positions[i[2]])};
-      const Outline outline = project(camera, triangle);
-      if (outline.count > 0) mark(outline, reach(scene, camera, outline), tile, marks);
+      mark_triangle(triangle);
     }
   }
   return marks;

@@ -40,7 +40,12 @@ MediumLines::Far::Far(const Scene& scene, const PreparedMix& prepared, MediumWal
 
 MediumLines::MediumLines(const Scene& scene, const PreparedMix& mix, MediumWalk* walk,
                          QueryCounters& counters, Arrivals* arrivals)
-    : scene_(scene), count_(mix.samples()), walk_(*walk), counters_(counters), arrivals_(arrivals) {
+    : scene_(scene),
+      now_(scene.lights, nullptr),
+      count_(mix.samples()),
+      walk_(*walk),
+      counters_(counters),
+      arrivals_(arrivals) {
   for (size_t l = 0; l < scene.lights.size() && !far_; ++l)
     if (is_far(scene.lights, l)) far_ = std::make_unique<Far>(scene, mix, walk, counters, arrivals);
 }
@@ -54,6 +59,7 @@ double MediumLines::end(const Vec3f& origin) const {
 
 Rgb MediumLines::estimate(const Ray& ray, double until, const Start& start, const PassSampler& sampler,
                           int depth) {
+  time_ = ray.time;
   const PassSampler numbers = sampler.branch(kLineBranch);
   const LightSet& lights = scene_.lights;
   const size_t parts = walk_.parts().size();
@@ -90,15 +96,15 @@ Rgb MediumLines::estimate(const Ray& ray, double until, const Start& start, cons
   return sum;
 }
 
-MediumLines::Apex MediumLines::choose(size_t light, const Vec2d& u) const {
+MediumLines::Apex MediumLines::choose(size_t light, const Vec2d& u) {
   const LightSet& lights = scene_.lights;
   Apex apex;
   apex.light = light;
   if (light < lights.area.size()) {
-    const LightPoint at = sample_area(lights.area[light].shape, Vec3d(0), u);
+    const LightPoint at = sample_area(area_light(light).shape, Vec3d(0), u);
     apex.p = at.p;
     apex.n = at.n;
-    apex.weight = area(lights.area[light].shape);
+    apex.weight = area(area_light(light).shape);
     return apex;
   }
   const DeltaEmitter& emitter = lights.delta[light - lights.area.size() - lights.environments.size()];
@@ -158,13 +164,13 @@ void MediumLines::find_visible(const Apex& apex, const Ray& ray, double t0, doub
   query.time = ray.time;
   if (apex.light < lights.area.size()) {
     const AreaEmitter& emitter = lights.area[apex.light];
-    query.light = {kNone, emitter.mesh, emitter.first_primitive};
+    query.light = {emitter.instance, emitter.mesh, emitter.first_primitive};
     query.light_primitives = emitter.primitives;
   }
   scene_.geometry->visible({&query, 1}, visible_, counters_);
 }
 
-Rgb MediumLines::arriving(const Apex& apex, const Vec3f& x, Vec3f& wi, double& distance) const {
+Rgb MediumLines::arriving(const Apex& apex, const Vec3f& x, Vec3f& wi, double& distance) {
   const LightSet& lights = scene_.lights;
   if (apex.light >= lights.area.size()) {
     const DeltaLight light = delta_light_at(
@@ -207,7 +213,7 @@ Rgb MediumLines::along(const Apex& apex, const Ray& ray, const Start& start, siz
   if (!(density > 0)) return Rgb(0);
   const Vec3f x(Vec3d(ray.origin) + Vec3d(ray.direction) * t);
   if (apex.light < scene_.lights.area.size() &&
-      through_own_wall(scene_.lights.area[apex.light].shape, apex.p, Vec3d(x)))
+      through_own_wall(area_light(apex.light).shape, apex.p, Vec3d(x)))
     return Rgb(0);
   Vec3f wi;
   double distance = 0;

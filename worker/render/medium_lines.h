@@ -10,6 +10,7 @@
 #include "worker/render/medium_stage.h"
 #include "worker/render/scene.h"
 #include "worker/strategies/direct_light.h"
+#include "worker/strategies/lights_now.h"
 
 namespace penumbra {
 
@@ -40,13 +41,15 @@ class MediumLines {
     Vec3d n{0, 0, 0};   ///< of an area light; 0: it shines everywhere
     double weight = 1;  ///< 1 / (number × density per area)
   };
-  Apex choose(size_t light, const Vec2d& u) const;
+  Apex choose(size_t light, const Vec2d& u);
+  /// An area light at the ray's time.
+  const AreaEmitter& area_light(size_t light) { return now_.at(light, time_); }
   Rgb along(const Apex& apex, const Ray& ray, const Start& start, size_t part, double until, double u);
   /// The part of [t0,t1] that the light may shine on: in front of an area light, in a spot's cone.
   bool clip_to_lit(const Apex& apex, const Ray& ray, double& t0, double& t1) const;
   void find_visible(const Apex& apex, const Ray& ray, double t0, double t1);
   /// Radiance × cosine / squared distance from the apex at x, or what a light without extent gives.
-  Rgb arriving(const Apex& apex, const Vec3f& x, Vec3f& wi, double& distance) const;
+  Rgb arriving(const Apex& apex, const Vec3f& x, Vec3f& wi, double& distance);
 
   /// The far lights as a set of their own.
   struct Far {
@@ -58,6 +61,8 @@ class MediumLines {
   };
 
   const Scene& scene_;
+  LightsNow now_;
+  float time_ = 0;
   int count_;
   MediumWalk& walk_;
   QueryCounters& counters_;

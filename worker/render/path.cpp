@@ -39,7 +39,7 @@ Rgb PathTracer::radiance(const CameraRay& camera_ray, const PassSampler& sampler
     const auto hit = scene_.geometry->intersect(ray, counters_);
     if (arrivals_) throughput_ = throughput;
     if (walk_) sum += scattered(ray, hit ? double(hit->distance) : kInfinity, sampler, depth, throughput);
-    if (!hit) return sum + throughput * background(ray.direction);
+    if (!hit) return sum + throughput * background(ray);
     if (arrivals_) {
       length_ += double(hit->distance);
       arrivals_->stand_at(length_, throughput);
@@ -140,9 +140,9 @@ Rgb PathTracer::arrived(const Hit& hit, const Ray& ray) {
   return light;
 }
 
-Rgb PathTracer::background(const Vec3f& direction) const {
+Rgb PathTracer::background(const Ray& ray) const {
   Rgb sum(0);
-  for (const Environment& e : scene_.lights.environments) sum += e.radiance(direction);
+  for (const Environment& e : scene_.lights.environments) sum += e.radiance(Vec3d(ray.origin), ray.direction);
   return sum;
 }
 

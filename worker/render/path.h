@@ -41,7 +41,7 @@ class PathTracer {
   Rgb scattered_by_points(const Ray& ray, double distance, const PassSampler& sampler, int depth, Rgb& left);
   Rgb scattered_by_lines(const Ray& ray, double distance, const PassSampler& sampler, int depth, Rgb& left);
   Rgb lit(const std::vector<ScatterVertex>& vertices, const Ray& ray, int depth, DirectLight& direct);
-  Rgb background(const Vec3f& direction) const;
+  Rgb background(const Ray& ray) const;
   /// One specular lobe, drawn in proportion to its throughput; false where there is none.
   bool bounce(const ShadingPoint& point, const PassSampler& sampler, int depth, Vec3f& direction,
               Rgb& throughput) const;

@@ -9,6 +9,7 @@
 #include "worker/render/camera_stage.h"
 #include "worker/render/light_pixels.h"
 #include "worker/render/path.h"
+#include "worker/render/pixel_lines.h"
 #include "worker/render/scene.h"
 #include "worker/render/thread_clock.h"
 #include "worker/sampling/sampler.h"
@@ -42,6 +43,8 @@ class PixelSampler {
         index_(uint32_t(index)),
         group_(group),
         stage_(rendering.job.probe ? nullptr : rendering.scene.effects.camera.get()),
+        lines_(mix.pixel == PixelSampling::kLine && !stage_ && !rendering.job.probe &&
+               !(rendering.job.camera_grid > 0)),
         prepared_(mix, rendering.scene.lights),
         bins_(rendering.job.transient ? std::make_unique<TimeBins>(*rendering.job.transient) : nullptr),
         tracer_(rendering.scene, prepared_, rendering.job.max_depth, counters_, bins_.get()) {}
@@ -55,11 +58,16 @@ class PixelSampler {
     const PixelRect& tile = rendering_.tile;
     const uint32_t pixel = uint32_t(y) * uint32_t(job.width) + uint32_t(x);
     const PassSampler sampler(job.sampler, job.seed, index_, rendering_.kind, pixel, pass, group_);
-    const FilterSample filter = filter_.sample(sampler.film());
     const Vec2d centre(x + 0.5, y + 0.5);
     const bool apart =
         rendering_.light_pixels[size_t(y - tile.y0) * size_t(tile.width()) + size_t(x - tile.x0)] != 0;
-    Rgb value = radiance(ray(centre, filter), sampler, !apart, filter.weight) * float(filter.weight);
+    Rgb value(0);
+    if (lines_) {
+      value = across(centre, sampler, !apart);
+    } else {
+      const FilterSample filter = filter_.sample(sampler.film());
+      value = radiance(ray(centre, filter), sampler, !apart, filter.weight) * float(filter.weight);
+    }
     if (apart) value += emission(centre, sampler);
     return value;
   }
@@ -76,6 +84,19 @@ class PixelSampler {
     if (const double cells = rendering_.job.camera_grid; cells > 0)
       at = Vec2d(std::floor(at.x * cells) + 0.5, std::floor(at.y * cells) + 0.5) / cells;
     return rendering_.camera.ray(at);
+  }
+
+  /// By the stretches of a line across the pixel.
+  Rgb across(const Vec2d& centre, const PassSampler& sampler, bool emission) {
+    looks_across_pixel(rendering_.camera, filter_, centre, sampler, *rendering_.scene.geometry, counters_,
+                       looks_);
+    Rgb sum(0);
+    for (size_t k = 0; k < looks_.size(); ++k) {
+      if (bins_) bins_->weigh(looks_[k].weight);
+      sum += tracer_.radiance(ray(centre, looks_[k]), sampler.branch(int(k)), emission) *
+             float(looks_[k].weight);
+    }
+    return sum;
   }
 
   /// Mean emission over the pixel's filter, from rays of its own.
@@ -120,6 +141,8 @@ class PixelSampler {
   uint32_t index_;
   int64_t group_;
   const CameraStage* stage_;  ///< null: a pinhole
+  bool lines_;                ///< across the pixel
+  std::vector<FilterSample> looks_;
   std::vector<WeightedRay> rays_;
   PreparedMix prepared_;
   QueryCounters counters_;

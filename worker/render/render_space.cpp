@@ -40,6 +40,13 @@ void move(Placement& placement, const Matrix& to_render) {
   placement.end *= to_render;
 }
 
+/// A portal's corners are in world space, whatever the light's placement.
+void move_portal(Params& params, const Vec3d& origin) {
+  for (Param& p : params.all)
+    if (p.name == "portal")
+      for (size_t i = 0; i < p.numbers.size(); ++i) p.numbers[i] -= origin[int(i % 3)];
+}
+
 /// Solid textures map world points by their placement, spherical and cylindrical mappings by its inverse, the
 /// planar one knows no placement.
 void move(TextureEntity& texture, const Vec3d& origin) {
@@ -104,7 +111,10 @@ SceneDescription moved_to(const Vec3d& origin, const SceneDescription& descripti
   // Shapes of objects are placed by their instances.
   for (ShapeEntity& shape : moved.shapes) move(shape.placement, to_render);
   for (InstanceEntity& instance : moved.instances) move(instance.placement, to_render);
-  for (LightEntity& light : moved.lights) move(light.placement, to_render);
+  for (LightEntity& light : moved.lights) {
+    move(light.placement, to_render);
+    move_portal(light.params, origin);
+  }
   for (MediumEntity& medium : moved.media) move(medium.placement, to_render);
   for (TextureEntity& texture : moved.textures) move(texture, origin);
   return moved;

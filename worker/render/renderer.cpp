@@ -94,6 +94,8 @@ std::vector<std::string> substitutions(const Scene& scene, const Mix& mix) {
     out.push_back("motion=line where nothing moves: nothing to do");
   else if (mix.motion == MotionSampling::kLine && mix.lens == LensSampling::kLine && scene.effects.lens)
     out.push_back("motion=line beside lens=line: chords of the lens, at points in time");
+  if (mix.pixel == PixelSampling::kLine && (scene.effects.lens || scene.effects.motion))
+    out.push_back("pixel=line where there is a lens or something moves: points of the film");
   for (const auto& [key, n] : counts)
     out.push_back(fmt::format("{} on {} {} light{}: {}", std::get<0>(key), n, std::get<1>(key),
                               n == 1 ? "" : "s", std::get<2>(key)));

@@ -84,14 +84,14 @@ absl::Status RenderSceneBuilder::place_shapes() {
   for (size_t i = 0; i < shapes.size();) {
     const Placement& placement = shapes[i].placement;
     if (!placement.moving()) {
-      RETURN_IF_ERROR(place_shape(shapes[i], placement.start, false));
+      RETURN_IF_ERROR(place_shape(shapes[i], placement.start, Owner::kWorld));
       ++i;
       continue;
     }
     const uint32_t first = uint32_t(scene_->meshes.size());
     const FileLoc loc = shapes[i].loc;
     for (; i < shapes.size() && together(shapes[i].placement, placement); ++i)
-      RETURN_IF_ERROR(place_shape(shapes[i], Matrix(), true));
+      RETURN_IF_ERROR(place_shape(shapes[i], Matrix(), Owner::kMover));
     objects_.push_back({first, uint32_t(scene_->meshes.size())});
     RETURN_IF_ERROR(place_object(uint32_t(objects_.size() - 1), placement, loc));
   }
@@ -99,8 +99,8 @@ absl::Status RenderSceneBuilder::place_shapes() {
 }
 
 absl::Status RenderSceneBuilder::place_shape(const ShapeEntity& shape, const Matrix& to_parent,
-                                             bool in_object) {
-  if (has_tubes(shape)) return in_object ? absl::OkStatus() : tubes_.add(shape, to_parent);
+                                             Owner owner) {
+  if (has_tubes(shape)) return owner != Owner::kWorld ? absl::OkStatus() : tubes_.add(shape, to_parent);
   if (!has_mesh(shape)) return absl::OkStatus();  // named by unsupported()
   ASSIGN_OR_RETURN(TriangleMesh mesh, make_mesh(shape, description_, files_, warnings_));
   if (mesh.indices.empty()) return absl::OkStatus();
@@ -116,14 +116,16 @@ absl::Status RenderSceneBuilder::place_shape(const ShapeEntity& shape, const Mat
   bool visible = alpha.texture >= 0 || alpha.constant > 0;
   if (!emits && scene_->materials.is_interface(shape.material)) visible = false;
   if (!emits && !visible) return absl::OkStatus();
-  if (emits && in_object) {
+  if (emits && owner == Owner::kObject) {
     warnings_.push_back(fmt::format("{}: an area light inside an object does not emit (as in pbrt)",
                                     description_.place(shape.loc)));
   } else if (emits) {
-    RETURN_IF_ERROR(add_area_light(shape, uint32_t(scene_->meshes.size()), placed, visible, description_,
-                                   files_, scene_->lights, warnings_));
+    // The object of a mover is placed once, next.
+    const uint32_t instance = owner == Owner::kMover ? uint32_t(placed_.size()) : kNone;
+    RETURN_IF_ERROR(add_area_light(shape, uint32_t(scene_->meshes.size()), instance, placed, visible,
+                                   description_, files_, scene_->lights, warnings_));
   }
-  if (!in_object) scene_->triangles += int64_t(placed.mesh.triangles());
+  if (owner == Owner::kWorld) scene_->triangles += int64_t(placed.mesh.triangles());
   scene_->meshes.push_back(std::move(placed));
   shapes_.push_back(&shape);
   visible_.push_back(visible);
@@ -141,7 +143,7 @@ absl::Status RenderSceneBuilder::place_objects() {
     if (object == kNone) {
       const uint32_t first = uint32_t(scene_->meshes.size());
       for (const ShapeEntity& shape : entity.shapes)
-        RETURN_IF_ERROR(place_shape(shape, shape.placement.start, true));
+        RETURN_IF_ERROR(place_shape(shape, shape.placement.start, Owner::kObject));
       object = uint32_t(objects_.size());
       objects_.push_back({first, uint32_t(scene_->meshes.size())});
     }
@@ -204,7 +206,7 @@ absl::Status RenderSceneBuilder::build_geometry() {
     inputs.push_back({&scene_->meshes[m].mesh, alpha_test(m), visible_[m], scene_->meshes[m].tubes.get()});
   ASSIGN_OR_RETURN(scene_->geometry, Geometry::build(inputs, objects_, placed_, options_.threads));
   for (AreaEmitter& light : scene_->lights.area) {
-    if (!light.flat) continue;
+    if (!light.flat || light.motion) continue;
     const PrimitiveId id{kNone, light.mesh, light.first_primitive};
     const LightPlace place =
         scene_->geometry->place_of(id, light.primitives, emission_normal(light.shape, Vec3d(0)));

@@ -24,8 +24,10 @@ class RenderSceneBuilder {
  private:
   absl::Status place_shapes();
   absl::Status place_objects();
-  /// `to_parent`: to the world, or to the space of the object that owns it.
-  absl::Status place_shape(const ShapeEntity& shape, const Matrix& to_parent, bool in_object);
+  /// Who owns a mesh: the world, the object of a shape that moves, an object of the text.
+  enum class Owner { kWorld, kMover, kObject };
+  /// `to_parent`: to the owner's space.
+  absl::Status place_shape(const ShapeEntity& shape, const Matrix& to_parent, Owner owner);
   absl::Status place_object(uint32_t object, const Placement& placement, FileLoc loc);
   absl::Status build_textures();
   absl::Status build_geometry();
@@ -47,11 +49,11 @@ class RenderSceneBuilder {
   TubePlacer tubes_;
 };
 
-/// Area emitters of a placed shape, appended to `lights`; the mesh's triangles are its surface.
-/// (area_lights.cpp)
-absl::Status add_area_light(const ShapeEntity& shape, uint32_t mesh, const SceneMesh& placed, bool visible,
-                            const SceneDescription& description, const SceneFiles& files, LightSet& lights,
-                            std::vector<std::string>& warnings);
+/// Area emitters of a placed shape, appended to `lights`; the mesh's triangles are its surface. One that moves
+/// is in its object's space, and `instance` will carry it. (area_lights.cpp)
+absl::Status add_area_light(const ShapeEntity& shape, uint32_t mesh, uint32_t instance, const SceneMesh& placed,
+                            bool visible, const SceneDescription& description, const SceneFiles& files,
+                            LightSet& lights, std::vector<std::string>& warnings);
 
 /// Lights that are not on shapes: point, spot, distant, infinite. (distant_lights.cpp)
 absl::Status add_light(const LightEntity& light, const SceneDescription& description, const SceneFiles& files,

@@ -105,12 +105,12 @@ TaskOutcome render_tile(const Scene& scene, const JobSpec& job, const TileTask& 
     if (needs_line_hierarchy(mix, scene.lights)) scene.geometry->prepare_lines();
   // So are the tables of maps that lines on the sky are drawn from.
   const bool by_map = std::any_of(job.mixes.begin(), job.mixes.end(), [](const Mix& mix) {
-    return std::any_of(mix.strategies.begin(), mix.strategies.end(), [](const StrategyCount& s) {
-      return s.kind == StrategyKind::kLineSolidAngleV;
-    });
+    return std::any_of(mix.strategies.begin(), mix.strategies.end(),
+                       [](const StrategyCount& s) { return s.kind == StrategyKind::kLineSolidAngleV; });
   });
   if (by_map && scene.lights.area.empty())
-    for (const Environment& light : scene.lights.environments) light.arcs();
+    for (const Environment& light : scene.lights.environments)
+      if (light.portal() == nullptr) light.arcs();
   if (job.probe && job.probe->kind == Probe::Kind::kIntegrand)
     return render_integrand(scene, job, task, cancel);
   TaskOutcome outcome;

@@ -23,7 +23,7 @@ Rgb DirectLight::estimate(const ShadingPoint& point, const PassSampler& sampler,
   constexpr int kOnce[] = {0};
   for (size_t l = 0; l < lights.area.size() + lights.environments.size(); ++l) {
     const LightView view = view_of(point, l);
-    sum += ask({view, l, 1, kOnce, 1, uint32_t(l)}, sampler, depth);
+    sum += ask({view, l, 1, kOnce, 1, uint32_t(l), now_.strategies(l, point.time)}, sampler, depth);
   }
   for (const DeltaEmitter& e : lights.delta) sum += delta(point, e, 1);
   return sum;
@@ -52,7 +52,9 @@ Rgb DirectLight::draw_lights(const ShadingPoint& point, const PassSampler& sampl
     const double draws = kDraws * first.probability;
     if (first.light < extended) {
       const LightView view = view_of(point, first.light);
-      sum += ask({view, first.light, draws, turns_, kDraws, kDrawStream}, sampler, depth);
+      sum += ask(
+          {view, first.light, draws, turns_, kDraws, kDrawStream, now_.strategies(first.light, point.time)},
+          sampler, depth);
     } else {
       sum += delta(point, lights.delta[first.light - extended], float(double(turns_.size()) / draws));
     }
@@ -60,14 +62,16 @@ Rgb DirectLight::draw_lights(const ShadingPoint& point, const PassSampler& sampl
   while (!hits_.empty()) {
     const size_t l = hits_.back().light;
     const LightView view = view_of(point, l);
-    sum += ask({view, l, kDraws * lights.probability(receiver, l)}, sampler, depth);
+    Task task{view, l, kDraws * lights.probability(receiver, l)};
+    task.strategies = now_.strategies(l, point.time);
+    sum += ask(task, sampler, depth);
   }
   return sum;
 }
 
-LightView DirectLight::view_of(const ShadingPoint& point, size_t light) const {
+LightView DirectLight::view_of(const ShadingPoint& point, size_t light) {
   const LightSet& lights = scene_.lights;
-  if (light < lights.area.size()) return LightView(point, lights.area[light], &sight_);
+  if (light < lights.area.size()) return LightView(point, now_.at(light, point.time), &sight_);
   return LightView(point, lights.environments[light - lights.area.size()], lights.reach());
 }
 
@@ -126,10 +130,10 @@ Rgb DirectLight::combine() {
 
 DirectLight::Integrand DirectLight::integrand(const ShadingPoint& point, size_t area_emitter,
                                               const Vec3d& on_light) {
-  const AreaEmitter& emitter = scene_.lights.area[area_emitter];
   const LightView view = view_of(point, area_emitter);
-  const Task task{view, area_emitter, 1};
-  const LightSample sample = towards(view, {on_light, emission_normal(emitter.shape, on_light), 0});
+  Task task{view, area_emitter, 1};
+  task.strategies = now_.strategies(area_emitter, point.time);
+  const LightSample sample = towards(view, {on_light, emission_normal(view.area().shape, on_light), 0});
   candidates_.assign(1, {sample, point.scatter(sample.wi) * sample.radiance, mix_.slots(), kNoLine});
   own_lines_.clear();
   sight_.skip();

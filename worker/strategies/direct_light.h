@@ -11,6 +11,7 @@
 #include "worker/strategies/combination.h"
 #include "worker/strategies/light_set.h"
 #include "worker/strategies/light_sight.h"
+#include "worker/strategies/lights_now.h"
 #include "worker/strategies/line_batch.h"
 #include "worker/strategies/prepared_mix.h"
 #include "worker/strategies/shading_point.h"
@@ -32,7 +33,7 @@ struct Surroundings {
 class DirectLight {
  public:
   DirectLight(const Surroundings& surroundings, const PreparedMix& mix, QueryCounters& counters)
-      : scene_(surroundings), mix_(mix), counters_(counters) {}
+      : scene_(surroundings), mix_(mix), counters_(counters), now_(surroundings.lights, &mix) {}
 
   /// Outgoing radiance at the point due to all lights; `depth` is the vertex's place on the path.
   Rgb estimate(const ShadingPoint& point, const PassSampler& sampler, int depth);
@@ -76,15 +77,18 @@ class DirectLight {
     std::span<const int> turns;
     int draws_in_all = 1;
     uint32_t stream = 0;
+    /// Of a light that moves: its strategies at the point's time, per slot.
+    const std::vector<Strategy>* strategies = nullptr;
     PreparedMix::Slot slot(const PreparedMix& mix, size_t s) const {
-      return view.is_area() ? mix.slot(light, s) : mix.environment_slot(s);
+      if (strategies != nullptr) return {(*strategies)[s], mix.count(s)};
+      return mix.slot(light, s);
     }
   };
 
   static bool is_black(const Rgb& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 
   Rgb draw_lights(const ShadingPoint& point, const PassSampler& sampler, int depth);
-  LightView view_of(const ShadingPoint& point, size_t light) const;
+  LightView view_of(const ShadingPoint& point, size_t light);
   Rgb ask(const Task& task, const PassSampler& sampler, int depth);
   Rgb answer(const Task& task, const PassSampler& sampler, int depth);
   // direct_light_arrivals.cpp
@@ -122,6 +126,7 @@ class DirectLight {
   Surroundings scene_;
   const PreparedMix& mix_;
   QueryCounters& counters_;
+  LightsNow now_;
 
   std::vector<BsdfHit> hits_;
   std::vector<Candidate> candidates_;

@@ -17,12 +17,11 @@ void DirectLight::trace_bsdf(const ShadingPoint& point, const PassSampler& sampl
   hits_.clear();
   const LightSet& lights = scene_.lights;
   for (size_t s = 0; s < mix_.slots(); ++s) {
-    const PreparedMix::Slot slot = mix_.environment_slot(s);
-    if (!is_bsdf(slot.strategy)) continue;
-    for (int i = 0; i < slot.count; ++i) {
-      const Vec2d u = sampler.light(depth, kBsdfStream, int(s), i, slot.count);
+    const int count = mix_.directions(s);
+    for (int i = 0; i < count; ++i) {
+      const Vec2d u = sampler.light(depth, kBsdfStream, int(s), i, count);
       const auto scattered =
-          point.scattering.sample(point.wo, u, sampler.choice(depth, kBsdfStream, int(s), i, slot.count));
+          point.scattering.sample(point.wo, u, sampler.choice(depth, kBsdfStream, int(s), i, count));
       if (!scattered || !(scattered->pdf > 0)) continue;
       const Vec3f& wi = scattered->wi;
       const Ray ray{point.origin(wi), wi, 0, std::numeric_limits<float>::infinity(), point.time};
@@ -33,16 +32,17 @@ void DirectLight::trace_bsdf(const ShadingPoint& point, const PassSampler& sampl
       if (!hit) {
         for (size_t e = 0; e < lights.environments.size(); ++e) {
           found.light = lights.area.size() + e;
-          found.sample.radiance = lights.environments[e].radiance(wi);
-          found.sample.at = {Vec3d(point.above) + Vec3d(wi) * double(lights.reach()), Vec3d(0),
-                             scattered->pdf};
+          const LightView view = view_of(point, found.light);
+          found.sample.radiance = view.environment().radiance(view.x(), wi);
+          if (is_black(found.sample.radiance)) continue;
+          found.sample.at = {view.far_along(wi), Vec3d(0), scattered->pdf};
           hits_.push_back(found);
         }
         continue;
       }
       const auto met = light_met(scene_.geometry, lights, ray, *hit, counters_);
       if (!met) continue;
-      const AreaEmitter& light = lights.area[met->emitter];
+      const AreaEmitter& light = now_.at(met->emitter, point.time);
       found.light = met->emitter;
       found.sample.radiance = light.radiance;
       found.sample.at = {met->p, emission_normal(light.shape, met->p), scattered->pdf};

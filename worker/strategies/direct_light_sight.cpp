@@ -108,7 +108,8 @@ bool DirectLight::clear(const Task& task, const LightSample& sample) {
   // light is the first thing met.
   const Ray ray{origin, sample.wi, 0, std::numeric_limits<float>::infinity(), time};
   const auto hit = scene_.geometry.intersect(ray, counters_);
-  return hit && hit->id.instance == kNone && hit->id.mesh == task.view.area().mesh;
+  const AreaEmitter& light = task.view.area();
+  return hit && hit->id.instance == light.instance && hit->id.mesh == light.mesh;
 }
 
 }  // namespace penumbra

@@ -93,6 +93,11 @@ LightLine through(const NormalArcStrategy&, const LightView& view, const Vec3d& 
 LightSample towards_sky(const LightView& view, const LightLine& line, double s, const LightPoint& at) {
   LightSample out;
   out.at = at;
+  if (!std::holds_alternative<ArcMeasure>(line.measure)) {
+    out.wi = Vec3f((at.p - view.x()).normalized());
+    out.radiance = view.environment().radiance(out.wi);
+    return out;
+  }
   out.wi = Vec3f((line.from + s * line.along).normalized());
   const auto& measure = std::get<ArcMeasure>(line.measure);
   const bool own = measure.table != nullptr && measure.table != &uniform_table();

@@ -16,7 +16,7 @@ std::optional<LightHit> unhidden(const Geometry& geometry, const LightSet& light
   thread_local std::vector<Meeting> met;
   geometry.beside(ray, first, lights.crowded, met, counters);
   for (const Meeting& m : met) {
-    const uint32_t emitter = lights.emitter_at(m.id, m.p, ray.direction);
+    const uint32_t emitter = lights.emitter_at(m.id, m.p, ray.direction, ray.time);
     if (emitter == kNone || !lights.area[emitter].crowded) continue;
     const AreaEmitter& light = lights.area[emitter];
     const LightEnd end = end_on_light(light, m.p, emission_normal(light.shape, m.p), ray.time);
@@ -28,7 +28,7 @@ std::optional<LightHit> unhidden(const Geometry& geometry, const LightSet& light
 }  // namespace
 
 LightEnd end_on_light(const AreaEmitter& light, const Vec3d& p, const Vec3d& normal, float time) {
-  const PrimitiveId id{kNone, light.mesh, light.first_primitive};
+  const PrimitiveId id{light.instance, light.mesh, light.first_primitive};
   return {p, {normal, light.rounding}, id, light.primitives, light.crowded, time};
 }
 
@@ -40,9 +40,11 @@ std::optional<LightHit> light_met(const Geometry& geometry, const LightSet& ligh
     const auto found = unhidden(geometry, lights, ray, first, counters);
     if (found) return found;
   }
-  const uint32_t emitter = lights.emitter_at(first.id, p, ray.direction);
-  // A crowded flat light was judged above.
-  if (emitter == kNone || (lights.area[emitter].flat && lights.area[emitter].crowded)) return std::nullopt;
+  const uint32_t emitter = lights.emitter_at(first.id, p, ray.direction, ray.time);
+  if (emitter == kNone) return std::nullopt;
+  // A crowded flat light was judged above, but for one that moves: of that the ray's distances are trusted.
+  const AreaEmitter& light = lights.area[emitter];
+  if (light.flat && light.crowded && !light.motion) return std::nullopt;
   return LightHit{emitter, p};
 }
 

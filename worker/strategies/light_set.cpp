@@ -1,21 +1,16 @@
 #include "worker/strategies/light_set.h"
 
 #include <algorithm>
-#include <numbers>
+
+#include "worker/lights/moving_light.h"
 
 namespace penumbra {
-namespace {
-
-constexpr double kPi = std::numbers::pi;
-
-}  // namespace
-
 void LightSet::finish(float reach) {
   reach_ = reach;
   crowded.clear();
   crowded_bounds.makeEmpty();
   for (const AreaEmitter& light : area) {
-    if (!light.flat || !light.crowded) continue;
+    if (!light.flat || !light.crowded || light.motion) continue;
     crowded.resize(by_mesh.size());
     crowded[light.mesh] = true;
     const LightBounds bounds = bounds_of(light);
@@ -32,7 +27,8 @@ void LightSet::finish(float reach) {
     near_.push_back(uint32_t(light));
     bounds.push_back(b);
   };
-  for (size_t l = 0; l < area.size(); ++l) place(bounds_of(area[l]), l);
+  for (size_t l = 0; l < area.size(); ++l)
+    place(area[l].motion ? bounds_of_moving(area[l]) : bounds_of(area[l]), l);
   for (size_t l = area.size(); l < size(); ++l) {
     const size_t d = l - area.size() - environments.size();
     if (is_far(l))
@@ -53,7 +49,7 @@ bool LightSet::is_far(size_t light) const {
 
 double LightSet::far_irradiance(size_t light, const Receiver& receiver) const {
   if (light < area.size() + environments.size())
-    return kPi * environments[light - area.size()].mean_luminance();
+    return environments[light - area.size()].irradiance(receiver.x);
   const auto& distant = std::get<DistantEmitter>(delta[light - area.size() - environments.size()]);
   const double cosine = receiver.has_horizon ? receiver.normal.dot(Vec3d(distant.towards_light)) : 1;
   return luminance(distant.irradiance) * std::max(cosine, 0.0);
@@ -101,14 +97,18 @@ double LightSet::probability(const Receiver& receiver, size_t light) const {
   return (1 - share) * tree_.probability(receiver, place_[light]);
 }
 
-uint32_t LightSet::emitter_at(const PrimitiveId& hit, const Vec3d& p, const Vec3f& direction) const {
-  if (hit.instance != kNone || hit.mesh >= by_mesh.size()) return kNone;
+uint32_t LightSet::emitter_at(const PrimitiveId& hit, const Vec3d& p, const Vec3f& direction,
+                              float time) const {
+  if (hit.mesh >= by_mesh.size()) return kNone;
   const MeshLights& lights = by_mesh[hit.mesh];
-  if (lights.first == kNone) return kNone;
+  if (lights.first == kNone || hit.instance != lights.instance) return kNone;
   const uint32_t sides = lights.two_sided ? 2 : 1;
   const uint32_t front = lights.first + (lights.per_primitive ? hit.primitive * sides : 0);
-  for (uint32_t e = front; e < front + sides; ++e)
-    if (emission_normal(area[e].shape, p).dot(Vec3d(direction)) < 0) return e;
+  for (uint32_t e = front; e < front + sides; ++e) {
+    const Vec3d normal = area[e].motion ? emission_normal(standing_at(area[e], double{time}).shape, p)
+                                        : emission_normal(area[e].shape, p);
+    if (normal.dot(Vec3d(direction)) < 0) return e;
+  }
   return kNone;
 }
 

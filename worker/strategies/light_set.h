@@ -29,11 +29,12 @@ class LightSet {
     uint32_t first = kNone;      ///< index into area; kNone: the mesh does not emit
     bool per_primitive = false;  ///< each triangle is an emitter of its own
     bool two_sided = false;      ///< then emitters come in pairs: front, back
+    uint32_t instance = kNone;   ///< that carries it, if it moves
   };
   std::vector<MeshLights> by_mesh;
 
-  /// Meshes with flat lights that something else is very close to (AreaEmitter::crowded), and the bounds of
-  /// these lights; none: the list is empty.
+  /// Meshes with flat lights that stand and that something else is very close to (AreaEmitter::crowded), and
+  /// the bounds of these lights; none: the list is empty.
   std::vector<bool> crowded;
   Imath::Box3d crowded_bounds;
 
@@ -41,9 +42,9 @@ class LightSet {
   void finish(float reach);
   float reach() const { return reach_; }
 
-  /// The area emitter that radiates from the point p of the hit surface against the ray's direction;
-  /// kNone if there is none.
-  uint32_t emitter_at(const PrimitiveId& hit, const Vec3d& p, const Vec3f& direction) const;
+  /// The area emitter that radiates from the point p of the hit surface against the ray's direction, at a
+  /// time of the shutter; kNone if there is none.
+  uint32_t emitter_at(const PrimitiveId& hit, const Vec3d& p, const Vec3f& direction, float time) const;
 
   size_t size() const { return area.size() + environments.size() + delta.size(); }
   bool draws() const { return size() > size_t(kMostAsked); }

@@ -51,6 +51,7 @@ std::optional<LightPolygon> polygon_of(const AreaEmitter& emitter) {
 bool LightSight::look(const Geometry& geometry, const ShadingPoint& point, const AreaEmitter& emitter,
                       size_t index, const VisibilityWork& work, QueryCounters& counters) {
   skip();
+  if (emitter.motion) return true;  // shafts ask at no time, and hold all that moves
   if (lights_.size() <= index) lights_.resize(index + 1);
   Light& light = lights_[index];
   if (!light.known) light.polygon = polygon_of(emitter), light.known = true;

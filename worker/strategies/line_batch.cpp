@@ -31,7 +31,7 @@ void LineBatch::add_part(Side& side, size_t line, const Interval& range, const S
   query.a = Vec3f(l.a + ab * double(range.lo));
   query.b = Vec3f(l.a + ab * double(range.hi));
   if (emitter != nullptr) {
-    query.light = {kNone, emitter->mesh, emitter->first_primitive};
+    query.light = {emitter->instance, emitter->mesh, emitter->first_primitive};
     query.light_primitives = emitter->primitives;
     query.plane = {l.n, emitter->rounding};
   }

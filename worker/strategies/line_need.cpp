@@ -5,7 +5,7 @@ namespace penumbra {
 bool needs_line_hierarchy(const Mix& mix, const LightSet& lights) {
   if (mix.automatic) return true;  // there are lines among its candidates
   if (mix.lens == LensSampling::kLine || mix.medium == MediumSampling::kLine ||
-      mix.motion == MotionSampling::kLine)
+      mix.motion == MotionSampling::kLine || mix.pixel == PixelSampling::kLine)
     return true;
   int points = 0;
   for (const StrategyCount& s : mix.strategies) {

@@ -19,8 +19,11 @@ class PreparedMix {
     int count;
   };
   size_t slots() const { return counts_.size(); }
-  Slot slot(size_t area_emitter, size_t s) const { return {fitted_[area_emitter * slots() + s], counts_[s]}; }
-  Slot environment_slot(size_t s) const { return {environment_[s], counts_[s]}; }
+  /// `light`: area emitters first, then environments. Of those that move: when the shutter opens.
+  Slot slot(size_t light, size_t s) const { return {fitted_[light * slots() + s], counts_[s]}; }
+  int count(size_t s) const { return counts_[s]; }
+  /// Directions that the slot draws from the material, for all lights; 0: it is no bsdf slot.
+  int directions(size_t s) const { return mix_.strategies[s].kind == StrategyKind::kBsdf ? counts_[s] : 0; }
   Combination combination() const { return combination_; }
   bool lines_in_media() const { return mix_.medium == MediumSampling::kLine; }
   /// Light samples of a shading point and light.
@@ -30,13 +33,11 @@ class PreparedMix {
   const Smoothing& smoothing() const { return smoothing_; }
 
  private:
-  std::vector<Strategy> fitted_;  ///< row per area emitter
-  std::vector<Strategy> environment_;
+  std::vector<Strategy> fitted_;  ///< row per light
   std::vector<int> counts_;
   Combination combination_;
   Smoothing smoothing_;
   Mix mix_;
-
 };
 
 }  // namespace penumbra

@@ -85,8 +85,13 @@ StrategyCount in_company(const StrategyCount& wanted, const Mix& mix) {
   return out;
 }
 
-Strategy fit_environment(const StrategyCount& wanted, bool lines) {
+Strategy fit_environment(const StrategyCount& wanted, const Environment& environment, bool lines) {
   if (wanted.kind == StrategyKind::kBsdf) return BsdfStrategy{};
+  if (environment.portal() != nullptr) {
+    const bool along_u = wanted.kind == StrategyKind::kLineSolidAngleU;
+    if (along_u || wanted.kind == StrategyKind::kLineSolidAngleV) return PortalChordStrategy{along_u};
+    return PortalStrategy{};
+  }
   if (lines && wanted.kind == StrategyKind::kLineSolidAngleU) return NormalArcStrategy{};
   if (lines && wanted.kind == StrategyKind::kLineSolidAngleV) return MapArcStrategy{};
   return EnvironmentStrategy{};
@@ -101,6 +106,10 @@ std::string name_of(const Strategy& strategy) {
     std::string operator()(const EnvironmentStrategy&) const { return "its own luminance"; }
     std::string operator()(const MapArcStrategy&) const { return "line-sa@v"; }
     std::string operator()(const NormalArcStrategy&) const { return "line-sa@u"; }
+    std::string operator()(const PortalStrategy&) const { return "sa"; }
+    std::string operator()(const PortalChordStrategy& s) const {
+      return s.along_u ? "line-sa@u" : "line-sa@v";
+    }
     std::string operator()(const LineAreaStrategy& s) const {
       return fmt::format("line-area@{:g}", s.radians / kDegree);
     }

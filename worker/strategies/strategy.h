@@ -36,6 +36,13 @@ struct EnvironmentStrategy {};
 struct MapArcStrategy {};
 /// `line-sa@u` there: quarters of great circles from the surface's normal to its horizon, by the cosine.
 struct NormalArcStrategy {};
+/// `sa` on light that comes through a portal (worker/effects/portal.h): by what is behind it, or uniform in
+/// its solid angle; stands for `area` and other lines there.
+struct PortalStrategy {};
+/// `line-sa@u`, `line-sa@v` there: the portal's chords, uniform in solid angle.
+struct PortalChordStrategy {
+  bool along_u = true;
+};
 /// `line-area@DEG`. The chords do not depend on the shading point: they are made once per light.
 struct LineAreaStrategy {
   double radians = 0;
@@ -60,7 +67,7 @@ struct LineSolidAngleStrategy {
 using Strategy =
     std::variant<BsdfStrategy, AreaStrategy, SolidAngleStrategy, VisibleAreaStrategy, EnvironmentStrategy,
                  LineAreaStrategy, LineUniformStrategy, LineAnalyticStrategy, LineSolidAngleStrategy,
-                 MapArcStrategy, NormalArcStrategy>;
+                 MapArcStrategy, NormalArcStrategy, PortalStrategy, PortalChordStrategy>;
 
 /// What a mix's strategy is in the company of the others: itself, but for `line-analytic`. A line as a whole
 /// has no density at a point, so weights of a point cannot know it: where they are asked for, it is
@@ -68,8 +75,9 @@ using Strategy =
 StrategyCount in_company(const StrategyCount& wanted, const Mix& mix);
 /// What a mix's strategy becomes on a light of this shape: itself, or the nearest that fits.
 Strategy fit(const StrategyCount& wanted, const AreaEmitter& emitter);
-/// On light from infinitely far away; `lines`: may `line-sa` draw lines there?
-Strategy fit_environment(const StrategyCount& wanted, bool lines);
+/// On light from infinitely far away; `lines`: may `line-sa` draw lines all around? (Through a portal it
+/// may.)
+Strategy fit_environment(const StrategyCount& wanted, const Environment& environment, bool lines);
 /// `sa`, for messages: the strategy in the words of the mix grammar.
 std::string name_of(const Strategy& strategy);
 bool is_line(const Strategy& strategy);
@@ -96,7 +104,16 @@ class LightView {
   bool is_area() const { return area_ != nullptr; }
   float reach() const { return reach_; }
   /// Where a direction of the environment is, as a point: past everything.
-  Vec3d far_along(const Vec3f& wi) const { return x() + Vec3d(wi) * double(reach_); }
+  Vec3d far_along(const Vec3f& wi) const {
+    const bool whole = environment_->portal() == nullptr;
+    return x() + Vec3d(wi) * (whole ? double(reach_) : portal().distance_to(Vec3d(wi), portal_far()));
+  }
+  /// The environment's portal, which it must have, and how far from x the plane is on which its lines lie.
+  const SeenPortal& portal() const {
+    if (!portal_) portal_.emplace(*environment_->portal(), x());
+    return *portal_;
+  }
+  double portal_far() const { return 2 * double(reach_); }
   Vec3d x() const { return Vec3d(point_->above); }
   const SeenShape& seen() const {
     if (!seen_) seen_.emplace(area_->shape, x());
@@ -112,6 +129,7 @@ class LightView {
   float reach_ = 0;
   const LightSight* sight_ = nullptr;
   mutable std::optional<SeenShape> seen_;
+  mutable std::optional<SeenPortal> portal_;
 };
 
 /// A direction towards a light.
@@ -128,6 +146,7 @@ LightSample sample(const AreaStrategy&, const LightView& view, const Vec2d& u);
 LightSample sample(const SolidAngleStrategy&, const LightView& view, const Vec2d& u);
 LightSample sample(const VisibleAreaStrategy&, const LightView& view, const Vec2d& u);
 LightSample sample(const EnvironmentStrategy&, const LightView& view, const Vec2d& u);
+LightSample sample(const PortalStrategy&, const LightView& view, const Vec2d& u);
 
 /// Density of sample() at a direction that some strategy found, sr⁻¹.
 double pdf(const BsdfStrategy&, const LightView& view, const LightSample& s);
@@ -135,6 +154,7 @@ double pdf(const AreaStrategy&, const LightView& view, const LightSample& s);
 double pdf(const SolidAngleStrategy&, const LightView& view, const LightSample& s);
 double pdf(const VisibleAreaStrategy&, const LightView& view, const LightSample& s);
 double pdf(const EnvironmentStrategy&, const LightView& view, const LightSample& s);
+double pdf(const PortalStrategy&, const LightView& view, const LightSample& s);
 
 /// The line that a line strategy draws with u in [0,1), or the one that passes through a point.
 /// scale 0: none.
@@ -144,12 +164,14 @@ LightLine choose(const LineAnalyticStrategy& strategy, const LightView& view, do
 LightLine choose(const LineSolidAngleStrategy& strategy, const LightView& view, double u);
 LightLine choose(const MapArcStrategy& strategy, const LightView& view, double u);
 LightLine choose(const NormalArcStrategy& strategy, const LightView& view, double u);
+LightLine choose(const PortalChordStrategy& strategy, const LightView& view, double u);
 LightLine through(const LineAreaStrategy& strategy, const LightView& view, const Vec3d& p);
 LightLine through(const LineUniformStrategy& strategy, const LightView& view, const Vec3d& p);
 LightLine through(const LineAnalyticStrategy& strategy, const LightView& view, const Vec3d& p);
 LightLine through(const LineSolidAngleStrategy& strategy, const LightView& view, const Vec3d& p);
 LightLine through(const MapArcStrategy& strategy, const LightView& view, const Vec3d& p);
 LightLine through(const NormalArcStrategy& strategy, const LightView& view, const Vec3d& p);
+LightLine through(const PortalChordStrategy& strategy, const LightView& view, const Vec3d& p);
 
 // The same, asked through the variant. A strategy of the other kind gives no sample, density 0, no line.
 LightSample sample_point(const Strategy& strategy, const LightView& view, const Vec2d& u);
@@ -166,7 +188,7 @@ Rgb closed_form(const LightView& view, const LightLine& line, double lo, double 
 
 /// A point of the view's area light as a sample (direction, radiance).
 LightSample towards(const LightView& view, const LightPoint& at);
-/// The point `at`, at s of an arc, as a sample of the view's environment.
+/// The point `at`, at s of a line, as a sample of the view's environment.
 LightSample towards_sky(const LightView& view, const LightLine& line, double s, const LightPoint& at);
 
 }  // namespace penumbra

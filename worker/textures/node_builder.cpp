@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "proto/status.h"
+#include "scenes/substitutes.h"
 
 namespace penumbra {
 namespace {
@@ -111,9 +112,7 @@ absl::StatusOr<Node> NodeBuilder::build_image(const TextureEntity& entity) {
     status = loaded.status();
   }
   // As pbrt-v3: the texture is 1 everywhere, times its scale.
-  RETURN_IF_ERROR(
-      complain(fmt::format("{}: image '{}' of texture '{}' cannot be read ({}): constant 1 instead",
-                           place(entity), name, entity.name, message_of(status))));
+  RETURN_IF_ERROR(complain(missing_text(entity, message_of(status), description_)));
   return ConstantNode{Rgb(node.scale)};
 }
 

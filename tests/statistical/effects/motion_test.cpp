@@ -164,6 +164,95 @@ TEST(Motion, FlyingTurningAndGrowing) {
       kMixes);
 }
 
+const std::vector<std::string> kLightMixes = {"bsdf:3",
+                                              "area:2",
+                                              "sa:1",
+                                              "bsdf:1+line-sa@v:1",
+                                              "visible-area:1",
+                                              "line-area@30:1+sa:1/power",
+                                              "line-analytic@60:1",
+                                              "sa:1/balance/motion=line"};
+std::string lit(const std::string& shape, const char* radiance, const char* more = "") {
+  return fmt::format(
+      "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [{}] {} Material \"matte\" \"rgb Kd\" "
+      "[0 0 0] {} AttributeEnd\n",
+      radiance, more, shape);
+}
+
+/// Looks down at the floor: no light above y = 1.2 is in view. What passes the film for a short while is a
+/// rare event there, of which neither side's variance knows.
+const std::string kDown = "LookAt 0 1.2 -3.2  0 0.1 0.3  0 1 0\nCamera \"perspective\" \"float fov\" 24\n";
+
+/// Lights of every shape that fly, turn, grow and are mirrored, and what stands and moves in their way.
+TEST(Motion, LightsThatMove) {
+  const Path turns{{-0.9, 1.7, 0.3}, {-0.3, 1.9, 0.1}, -30, 80, {0.2, 0.1, 1}, {-1, 1, 1}, {-0.6, 1.3, 1}};
+  const Path grows{{1.1, 1.6, 0.4}, {0.9, 1.9, -0.2}, 0, 20, {1, 0, 0}, {0.6, 0.6, 0.6}, {1.4, 1.4, 1.4}};
+  const Path falls{{0.1, 2.4, 0.6}, {0.3, 1.7, 0.9}, 100, 60, {1, 0.2, 0}};
+  const Path flies{{-1.5, 1, -0.6}, {1.2, 0.9, 0.3}};
+  const std::string quad =
+      "Shape \"quad\" \"point o\" [-0.3 0 -0.2] \"vector u\" [0.6 0 0] \"vector v\" [0 0 0.4]";
+  expect_as_standing(
+      [&](const Placer& placed) {
+        return room(kDown, lit(placed(turns) + quad, "14 6 2", "\"bool twosided\" true") +
+                               lit(placed(grows) + "Shape \"sphere\" \"float radius\" 0.2", "4 7 3") +
+                               lit(placed(falls) + "Shape \"disk\" \"float radius\" 0.3", "2 4 12") +
+                               "AttributeBegin " + placed(flies) +
+                               "Shape \"sphere\" \"float radius\" 0.25 AttributeEnd\n");
+      },
+      kLightMixes);
+}
+
+/// More lights than are asked one by one: scraps of a mesh that turns, a cylinder, a triangle with vertex
+/// normals that turn it round.
+TEST(Motion, ManyLightsThatMove) {
+  const Path turns{{-0.5, 2, 0.2}, {0.6, 2.1, 0.5}, 0, 150, {0.2, 0, 1}, {1, 0.5, 0.5}, {1, 0.5, 0.5}};
+  const Path rolls{{1.2, 1.8, 0}, {0.8, 1.6, 0.3}, 0, 90, {0, 1, 0}};
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-0.6, 0.6);
+  std::string indices, points;
+  for (int t = 0; t < 18; ++t) {
+    const double x = uniform(random), y = uniform(random), z = uniform(random);
+    indices += fmt::format("{} {} {} ", 3 * t, 3 * t + 1, 3 * t + 2);
+    points += fmt::format("{} {} {}  {} {} {}  {} {} {} ", x, y, z, x + 0.2, y + uniform(random) / 3, z, x, y,
+                          z + 0.3);
+  }
+  expect_as_standing(
+      [&](const Placer& placed) {
+        return room(
+            kDown,
+            lit(placed(turns) + "Shape \"trianglemesh\" \"integer indices\" [" + indices + "] \"point P\" [" +
+                    points + "]",
+                "9 7 5") +
+                lit(placed(rolls) + "Shape \"cylinder\" \"float radius\" 0.1 \"float zmin\" -0.2 \"float "
+                                    "zmax\" 0.2",
+                    "3 6 8") +
+                lit(placed(rolls) +
+                        "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point P\" [-0.9 0.6 0  -0.4 "
+                        "0.6 0  -0.9 0.7 0.6] \"normal N\" [0 -1 0  0 -1 0  0 -1 0]",
+                    "9 3 9"));
+      },
+      {"bsdf:3", "sa:1", "bsdf:1+line-sa@u:1"});
+}
+
+/// In fog, by points and from the light.
+TEST(Motion, ALightThatMovesInFog) {
+  const Path swings{{-0.8, 1.7, 0.4}, {0.7, 1.5, 0.4}, -40, 80, {0, 0, 1}};
+  const std::string quad =
+      "Shape \"quad\" \"point o\" [-0.3 0 -0.2] \"vector u\" [0.6 0 0] \"vector v\" [0 0 0.4]";
+  expect_as_standing(
+      [&](const Placer& placed) {
+        return "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.05 0.05 0.05] "
+               "\"rgb "
+               "sigma_s\" [0.2 0.2 0.2]\n" +
+               room(kDown,
+                    "AttributeBegin MediumInterface \"fog\" \"\" Material \"interface\" Translate 0 1 0.3 "
+                    "Shape "
+                    "\"sphere\" \"float radius\" 1.1 AttributeEnd\n" +
+                        lit(placed(swings) + quad, "14 6 2"));
+      },
+      {"bsdf:1+sa:1", "line-sa@u:1", "sa:1/balance/medium=line"});
+}
+
 /// Mirrors see what moves at the time of the ray that looks into them, and move themselves.
 TEST(Motion, MirrorsThatTurn) {
   const Path turns{{0, 0.8, 0.4}, {0, 0.8, 0.4}, -20, 50, {0, 1, 0}},

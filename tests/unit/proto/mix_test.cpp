@@ -36,7 +36,7 @@ TEST(Mix, TheNormalFormSaysNothingOfPointsOnTheLens) {
 }
 
 TEST(Mix, LabelsAreReadBack) {
-  for (const char* text : {"sa/lens=line", "sa/motion=line", "bsdf+line-sa@v:3/smooth=0.25/lens=line",
+  for (const char* text : {"sa/lens=line", "sa/motion=line", "sa:2/free/pixel=line", "bsdf+line-sa@v:3/smooth=0.25/lens=line",
                            "sa+area/average/lens=line", "line-area@33.5:2/smooth-ease=auto", "bsdf:1/free"}) {
     const auto mix = parse_mix(text);
     ASSERT_TRUE(mix.ok()) << text;
@@ -49,6 +49,7 @@ TEST(Mix, LabelsAreReadBack) {
 TEST(Mix, FaultsNameTheWord) {
   const std::pair<const char*, const char*> faults[] = {
       {"sa/motion=curve", "'curve'"},
+      {"sa/pixel=area", "pixel=point or pixel=line"},
       {"sa/lens=plane", "'plane'"},
       {"sa/lens=", "lens=point or lens=line"},
       {"sa/lens=line/balance", "'balance'"},

@@ -37,6 +37,20 @@ double second_moment(const Filter& f) {
   return sum / weights;
 }
 
+TEST(Filter, PlacesAreTheInverseOfOffsets) {
+  for (const char* type : {"box", "triangle", "gaussian", "mitchell"}) {
+    const Filter f = filter(type);
+    for (const int axis : {0, 1})
+      for (int i = 0; i <= 200; ++i) {
+        const double u = i / 200.0;
+        double weight = 1;
+        EXPECT_NEAR(f.place_of(axis, f.sample_along(axis, u, weight)), u, 1e-9) << type;
+      }
+    EXPECT_EQ(f.place_of(0, -f.radius().x), 0);
+    EXPECT_EQ(f.place_of(0, f.radius().x), 1);
+  }
+}
+
 TEST(Filter, MomentsOfTheKnownFilters) {
   EXPECT_NEAR(second_moment(filter("box", {{"xwidth", 1.0}, {"ywidth", 1.0}})), 1.0 / 3, 1e-3);
   // Triangle of radius r: r²/6.

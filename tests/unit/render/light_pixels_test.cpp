@@ -46,6 +46,21 @@ TEST(LightPixels, ATileMarksWhatThePictureMarks) {
     for (int x = 5; x < 19; ++x) EXPECT_EQ(tile[size_t((y - 9) * 14 + x - 5)], picture[size_t(y * 24 + x)]);
 }
 
+/// From the left border to the right one while the shutter is open.
+TEST(LightPixels, ALightThatMovesMarksItsWay) {
+  const ScenePtr scene = test::load_text(
+      "Camera \"perspective\" \"float fov\" 90\nWorldBegin\nAttributeBegin\nAreaLightSource \"diffuse\"\n"
+      "ActiveTransform StartTime Translate -3.5 0 0 ActiveTransform EndTime Translate 3 0 0 ActiveTransform "
+      "All\n"
+      "Shape \"quad\" \"point o\" [ 0 0.1 4 ] \"vector u\" [ 0.4 0 0 ] \"vector v\" [ 0 0.3 0 "
+      "]\nAttributeEnd\n");
+  ASSERT_TRUE(scene);
+  const auto camera = Camera::build(scene->description, 16, 16);
+  const auto seen = light_pixels(*scene, *camera, {0, 0, 16, 16});
+  for (int x = 1; x < 15; ++x) EXPECT_EQ(seen[size_t(7 * 16 + x)], 1) << x;
+  for (int x = 0; x < 16; ++x) EXPECT_EQ(seen[size_t(12 * 16 + x)] + seen[size_t(3 * 16 + x)], 0) << x;
+}
+
 TEST(LightPixels, ALightThatReachesBehindTheCameraIsCutOff) {
   // A wall at x = 1 from behind the camera to depth 8: it fills the right half up to x = 8 + 8/8.
   const auto seen =

@@ -50,8 +50,8 @@ TEST(SceneBuilder, TwoSidedLightsAreTwoEmittersBackToBack) {
   ASSERT_EQ(scene->lights.area.size(), 2u);
   EXPECT_EQ(normal(scene->lights.area[0]), -normal(scene->lights.area[1]));
   const PrimitiveId hit{kNone, 0, 0};
-  EXPECT_EQ(scene->lights.emitter_at(hit, {0.5, 0.5, 0}, {0, 0, -1}), 0u);
-  EXPECT_EQ(scene->lights.emitter_at(hit, {0.5, 0.5, 0}, {0, 0, 1}), 1u);
+  EXPECT_EQ(scene->lights.emitter_at(hit, {0.5, 0.5, 0}, {0, 0, -1}, 0), 0u);
+  EXPECT_EQ(scene->lights.emitter_at(hit, {0.5, 0.5, 0}, {0, 0, 1}, 0), 1u);
 }
 
 TEST(SceneBuilder, BlackLightsAreSurfaces) {

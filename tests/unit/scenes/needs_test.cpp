@@ -30,6 +30,8 @@ TEST(Needs, APlainSceneNeedsNothing) {
 
 TEST(Needs, EachEffectIsSeen) {
   EXPECT_THAT(effects("Camera \"perspective\" \"float lensradius\" 0.1 WorldBegin"), ElementsAre("lens"));
+  // A pinhole stands in for it, whatever its lenses.
+  EXPECT_THAT(effects("Camera \"realistic\" \"string lensfile\" \"a.dat\" WorldBegin"), IsEmpty());
   EXPECT_THAT(effects("WorldBegin LightSource \"infinite\""), ElementsAre("environment"));
   EXPECT_THAT(effects("WorldBegin Shape \"curve\""), ElementsAre("curves"));
   EXPECT_THAT(effects("WorldBegin MediumInterface \"a\" \"\" Shape \"sphere\""), ElementsAre("media"));
