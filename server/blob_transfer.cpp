@@ -18,6 +18,18 @@ absl::Status check_digest(const std::string& digest) {
 
 }  // namespace
 
+absl::Status check_room(const BlobFolder& blobs, const BlobLimits& limits, const Digest& digest,
+                        uint64_t bytes) {
+  if (bytes > limits.most_bytes)
+    return make_status(absl::StatusCode::kInvalidArgument, "blob {}: {} bytes, the limit is {}", digest,
+                       bytes, limits.most_bytes);
+  if (const uint64_t free = blobs.free_bytes(); free < limits.reserve_bytes + bytes)
+    return make_status(absl::StatusCode::kResourceExhausted,
+                       "blob {}: {} bytes; the server's disk has {} left and keeps {} of them free", digest,
+                       bytes, free, limits.reserve_bytes);
+  return absl::OkStatus();
+}
+
 absl::StatusOr<v1::FindMissingResponse> missing_blobs(const BlobFolder& blobs,
                                                       const v1::FindMissingRequest& request) {
   if (request.digests_size() > kMostDigests) return invalid_input("digests: more than {}", kMostDigests);
@@ -38,13 +50,7 @@ absl::StatusOr<uint64_t> receive_blob(const BlobFolder& blobs, const BlobLimits&
   v1::UploadChunk chunk;
   if (!read(chunk)) return invalid_input("an upload without a chunk");
   RETURN_IF_ERROR(check_digest(chunk.digest()));
-  if (chunk.size() > limits.most_bytes)
-    return make_status(absl::StatusCode::kInvalidArgument, "blob {}: {} bytes, the limit is {}",
-                       chunk.digest(), chunk.size(), limits.most_bytes);
-  if (const uint64_t free = blobs.free_bytes(); free < limits.reserve_bytes + chunk.size())
-    return make_status(absl::StatusCode::kResourceExhausted,
-                       "blob {}: {} bytes; the server's disk has {} left and keeps {} of them free",
-                       chunk.digest(), chunk.size(), free, limits.reserve_bytes);
+  RETURN_IF_ERROR(check_room(blobs, limits, chunk.digest(), chunk.size()));
   const uint64_t size = chunk.size();
   const bool flush = !chunk.flush_later();
   ASSIGN_OR_RETURN(const auto writer, blobs.write(chunk.digest(), chunk.size(), chunk.offset()));

@@ -15,6 +15,10 @@ struct BlobLimits {
   uint64_t reserve_bytes = uint64_t{256} << 20;
 };
 
+/// Whether a blob of that size may be stored. InvalidArgument: never; ResourceExhausted: not now.
+absl::Status check_room(const BlobFolder& blobs, const BlobLimits& limits, const Digest& digest,
+                        uint64_t bytes);
+
 /// Which of the digests are not here. InvalidArgument for one that is none, and for too many.
 absl::StatusOr<v1::FindMissingResponse> missing_blobs(const BlobFolder& blobs,
                                                       const v1::FindMissingRequest& request);

@@ -1,10 +1,6 @@
 #pragma once
 #include "proto/blobs.grpc.pb.h"
-<<<<<<< HEAD
-#include "server/blob_limits.h"
-=======
 #include "server/blob_transfer.h"
->>>>>>> proofs
 
 namespace penumbra {
 

@@ -1,6 +1,6 @@
 #pragma once
 #include "proto/worker.grpc.pb.h"
-#include "server/blob_limits.h"
+#include "server/blob_transfer.h"
 #include "server/coordinator.h"
 
 namespace penumbra {
