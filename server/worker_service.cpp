@@ -1,5 +1,7 @@
 #include "server/worker_service.h"
 
+#include <atomic>
+
 #include "film/tile_pixels.h"
 #include "proto/convert.h"
 #include "proto/rpc_status.h"
@@ -43,9 +45,15 @@ absl::StatusOr<ResultShape> shape_of(const BlobFolder& blobs, const BlobLimits& 
 /// One call. Lives until gRPC says that it is over; finished exactly once, by the coordinator's reply.
 class SyncCall final : public grpc::ServerUnaryReactor {
  public:
+<<<<<<< HEAD
   SyncCall(Coordinator& coordinator, const BlobLimits& limits, const v1::SyncRequest& request,
            v1::SyncResponse& response)
       : coordinator_(coordinator), ticket_(coordinator.new_ticket()) {
+=======
+  SyncCall(Coordinator& coordinator, const v1::SyncRequest& request, v1::SyncResponse& response)
+      : coordinator_(coordinator) {
+    ticket_ = coordinator.new_ticket();
+>>>>>>> proofs
     absl::StatusOr<WorkerState> state = from_proto(request);
     if (!state.ok()) {
       Finish(to_grpc(state.status()));
@@ -61,12 +69,17 @@ class SyncCall final : public grpc::ServerUnaryReactor {
                      });
   }
 
-  void OnCancel() override { coordinator_.cancel_sync(ticket_); }
+  void OnCancel() override {
+    const uint64_t ticket = ticket_;
+    coordinator_.cancel_sync(ticket);
+  }
   void OnDone() override { delete this; }
 
  private:
   Coordinator& coordinator_;
-  uint64_t ticket_;
+  /// Written when what OnCancel reads is there, and read first: gRPC orders the two as well, but unseen by
+  /// those who look for races.
+  std::atomic<uint64_t> ticket_{0};
 };
 
 }  // namespace

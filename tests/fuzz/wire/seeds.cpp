@@ -61,7 +61,7 @@ MixCost full_cost() {
 WorkerState full_state() {
   WorkerState state{"1", {"w", "h", "avx2", 2}, "0"};
   state.held = {{{"j0", 0, 1}, true}};
-  state.completed = {{{"j0", 1, 1}, "", {full_cost()}, "log"}};
+  state.completed = {{{"j0", 1, 1}, "", "", {full_cost()}, "log"}};
   state.failed = {{{"j0", 2, 1}, TaskFailure::kError, "why", "log"}};
   state.loaded = {{"j0", {0.5, 0.5, {{"lens", "s:1:1"}}, {"w"}}, {{0, "line-sa@v on 1 light: sa"}}}};
   state.wanted = 2;

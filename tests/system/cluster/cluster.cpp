@@ -105,7 +105,8 @@ Cluster::~Cluster() {
   workers_.clear();
   server_.reset();
   expect_sound();
-  if (testing::Test::HasFailure()) std::fprintf(stderr, "%s\n", server_log().c_str());
+  if (testing::Test::HasFailure())
+    std::fprintf(stderr, "%s\n%s\n", server_log().c_str(), read_text(path("worker.log")).c_str());
   std::error_code error;
   std::filesystem::remove_all(root_, error);
 }

@@ -94,8 +94,8 @@ class Cluster {
 };
 
 double steady_seconds();
-/// What times that a test waits at most are multiplied by: PENUMBRA_PATIENCE, for programs that a sanitiser slows
-/// down; 1 without.
+/// What times that a test waits at most are multiplied by: PENUMBRA_PATIENCE, for programs that a sanitiser
+/// slows down; 1 without.
 double patience();
 
 }  // namespace penumbra

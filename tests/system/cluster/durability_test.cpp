@@ -1,5 +1,6 @@
 // Disks, clocks, messages and workers that cannot be trusted: the picture is that of the undisturbed run,
 // nothing is done twice that need not be, and the counts say what happened.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -204,7 +205,7 @@ TEST(Durability, GarbageIsRefusedAndItsWorkerCannotFailTheJob) {
 
 TEST(Durability, AWorkerThatComputesForEverLosesItsTasksAndGetsNoMore) {
   Cluster cluster(test_name());
-  cluster.server_flags = {"--task-limit", "1s"};
+  cluster.server_flags = {"--task-limit", fmt::format("{}s", patience())};
   cluster.worker_prefix = {"env", "PENUMBRA_FAKE=endless"};
   cluster.start_server();
   cluster.start_worker();
