@@ -45,15 +45,10 @@ absl::StatusOr<ResultShape> shape_of(const BlobFolder& blobs, const BlobLimits& 
 /// One call. Lives until gRPC says that it is over; finished exactly once, by the coordinator's reply.
 class SyncCall final : public grpc::ServerUnaryReactor {
  public:
-<<<<<<< HEAD
   SyncCall(Coordinator& coordinator, const BlobLimits& limits, const v1::SyncRequest& request,
            v1::SyncResponse& response)
-      : coordinator_(coordinator), ticket_(coordinator.new_ticket()) {
-=======
-  SyncCall(Coordinator& coordinator, const v1::SyncRequest& request, v1::SyncResponse& response)
       : coordinator_(coordinator) {
     ticket_ = coordinator.new_ticket();
->>>>>>> proofs
     absl::StatusOr<WorkerState> state = from_proto(request);
     if (!state.ok()) {
       Finish(to_grpc(state.status()));
