@@ -94,7 +94,8 @@ TEST_F(SqliteStoreTest, LogsAreKeptByTileUntilTheirJobGoes) {
   const auto store = open();
   const auto texts = [&](uint64_t modulus, uint64_t remainder, size_t most_bytes) {
     std::vector<std::string> out;
-    for (const PutLog& kept : *store->logs("j1", modulus, remainder, most_bytes)) out.push_back(kept.text);
+    const auto logs = store->logs("j1", modulus, remainder, most_bytes);
+    for (const PutLog& kept : *logs) out.push_back(kept.text);
     return out;
   };
   using Texts = std::vector<std::string>;
