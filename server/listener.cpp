@@ -9,6 +9,7 @@
 #include <grpcpp/server_builder.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <mutex>
 #include <utility>
@@ -55,11 +56,13 @@ class TokenProcessor final : public grpc::AuthMetadataProcessor {
   explicit TokenProcessor(std::vector<TokenEntry> entries) : entries_(std::move(entries)) {
     for (const TokenEntry& entry : entries_)
       buckets_.push_back(std::make_unique<TokenBucket>(entry.requests_per_second));
+    whole_ = true;
   }
   bool IsBlocking() const override { return false; }
 
   grpc::Status Process(const InputMetadata& metadata, grpc::AuthContext* context, OutputMetadata* consumed,
                        OutputMetadata*) override {
+    PENUMBRA_CHECK(whole_);
     constexpr std::string_view kBearer = "Bearer ";
     const auto authorization = metadata.find("authorization");
     const TokenEntry* entry = nullptr;
@@ -85,6 +88,9 @@ class TokenProcessor final : public grpc::AuthMetadataProcessor {
  private:
   std::vector<TokenEntry> entries_;
   std::vector<std::unique_ptr<TokenBucket>> buckets_;  ///< parallel to entries_
+  /// Written last and read first: gRPC, whose threads may be older than this, orders the two as well, but
+  /// unseen by those who look for races.
+  std::atomic<bool> whole_{false};
 };
 
 absl::StatusOr<std::shared_ptr<grpc::ServerCredentials>> server_credentials(const ListenOptions& o) {
