@@ -16,10 +16,8 @@ absl::StatusOr<std::string> bytes_of(const BlobFolder& blobs, const BlobLimits& 
   if (task.bytes.empty()) return blobs.read_unverified(task.result);
   absl::Status kept = check_room(blobs, limits, task.result, task.bytes.size());
   if (kept.ok()) kept = blobs.put(task.result, task.bytes);
-  if (kept.ok() || absl::IsInvalidArgument(kept)) {
-    RETURN_IF_ERROR(kept);
-    return std::move(task.bytes);
-  }
+  if (kept.ok()) return std::move(task.bytes);
+  if (absl::IsInvalidArgument(kept)) return kept;
   // The disk's trouble, not the worker's. It hears of it, and goes on trying, where it uploads.
   task.bytes.clear();
   return make_status(absl::StatusCode::kNotFound, "{}", message_of(kept));

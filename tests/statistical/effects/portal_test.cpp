@@ -11,6 +11,7 @@
 #include "film/statistics.h"
 #include "tests/statistical/lights/statistics.h"
 #include "tests/statistical/render/agreement.h"
+#include "tests/statistical/render/sky_map.h"
 
 namespace penumbra {
 namespace {
@@ -147,15 +148,8 @@ class PortalPictures : public testing::Test {
   }
   ~PortalPictures() override { fs::remove_all(folder_); }
   void write_map(int width, int height, float sun) const {
-    FilmImage map;
-    map.width = width;
-    map.height = height;
-    map.window = {0, 0, width, height};
-    for (int i = 0; i < width * height; ++i)
-      for (int c = 0; c < 3; ++c)
-        map.rgb.push_back(0.2f + 0.1f * float(c) + 0.3f * float((i / width + i % width) % 4));
-    for (int i = 0; i < 3; ++i) map.rgb[size_t(3 * (width * height / 3 + 2) + i)] = sun;
-    ASSERT_TRUE(write_exr(folder_ / "map.exr", map, {}).ok());
+    const int sun_at = width * height / 3 + 2;
+    test::write_sky_map(folder_ / "map.exr", width, height, {{sun_at % width, sun_at / width, sun}});
   }
   ScenePtr scene(const std::string& light, const std::string& more = "",
                  const std::string& start = "") const {

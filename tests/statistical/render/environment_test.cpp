@@ -7,6 +7,7 @@
 
 #include "film/exr.h"
 #include "tests/statistical/render/agreement.h"
+#include "tests/statistical/render/sky_map.h"
 
 namespace penumbra {
 namespace {
@@ -39,16 +40,7 @@ class EnvironmentLines : public testing::Test {
 
   /// A dim map with some texels of its own brightness.
   void write_map(int width, int height, const std::vector<std::tuple<int, int, float>>& bright) const {
-    FilmImage map;
-    map.width = width;
-    map.height = height;
-    map.window = {0, 0, width, height};
-    for (int i = 0; i < width * height; ++i)
-      for (int c = 0; c < 3; ++c)
-        map.rgb.push_back(0.2f + 0.1f * float(c) + 0.3f * float((i / width + i % width) % 4));
-    for (const auto& [x, y, value] : bright)
-      for (size_t c = 0; c < 3; ++c) map.rgb[3 * (size_t(y) * size_t(width) + size_t(x)) + c] = value;
-    ASSERT_TRUE(write_exr(folder_ / "map.exr", map, {}).ok());
+    test::write_sky_map(folder_ / "map.exr", width, height, bright);
   }
   ScenePtr scene(const std::string& light, const std::string& shapes = kOverAFloor) const {
     std::ofstream(folder_ / "scene.pbrt") << kCamera << light << shapes;
