@@ -15,6 +15,16 @@ void RoundSums::add(const ErrorFigures& error, double round_passes, double cpu_s
   if (error.reference_floor) floor = floor.value_or(0) + *error.reference_floor * round_passes;
   block_relmse.resize(error.blocks.relmse.size(), 0);
   for (size_t b = 0; b < block_relmse.size(); ++b) block_relmse[b] += error.blocks.relmse[b] * round_passes;
+  // A round without the variance leaves no variance of the sum.
+  if (error.variance && (variance || seconds_per_pass.empty())) {
+    variance = variance.value_or(0) + *error.variance * round_passes;
+    block_variance.resize(error.blocks.variance.size(), 0);
+    for (size_t b = 0; b < block_variance.size(); ++b)
+      block_variance[b] += error.blocks.variance[b] * round_passes;
+  } else {
+    variance.reset();
+    block_variance.clear();
+  }
   seconds_per_pass.push_back(cpu_seconds / round_passes);
 }
 
@@ -28,6 +38,8 @@ GateFigures per_pass(const RoundSums& sums) {
   f.relmse = sums.relmse;
   f.floor = sums.floor;
   f.block_relmse = sums.block_relmse;
+  f.variance = sums.variance;
+  f.block_variance = sums.block_variance;
   return f;
 }
 
@@ -65,13 +77,14 @@ absl::StatusOr<Side> open_side(const AgainstOptions& against, const std::string&
 
 std::vector<GateRow> rows_of(const std::string& mix, const RoundSums& now, const RoundSums& before,
                              const GateOptions& options) {
-  const LogRatio error = error_ratio(per_pass(now), per_pass(before));
+  std::vector<GateRow> rows = error_rows(mix, per_pass(now), per_pass(before), options);
   std::vector<double> cpu;
   for (size_t r = 0; r < now.seconds_per_pass.size(); ++r)
     cpu.push_back(std::log(now.seconds_per_pass[r] / before.seconds_per_pass[r]));
   const std::optional<Estimate> cost = mean_of(cpu);
-  return {{mix, "error per pass", error.estimate, options.tolerance, {}, error.why_not},
-          {mix, "CPU per pass", cost, options.cpu_tolerance, {}, cost ? "" : "not judged: one round"}};
+  rows.push_back(
+      {mix, std::string(kCpuPerPass), cost, options.cpu_tolerance, {}, cost ? "" : "not judged: one round"});
+  return rows;
 }
 
 absl::StatusOr<GateResult> gate_against(const AgainstOptions& against, const GateOptions& options,

@@ -27,6 +27,8 @@ struct RoundSums {
   double passes = 0, relmse = 0;  ///< relmse, floor and blocks: means of figure × passes
   std::optional<double> floor;
   std::vector<double> block_relmse;
+  std::optional<double> variance;  ///< of all rounds or of none
+  std::vector<double> block_variance;
   std::vector<double> seconds_per_pass;  ///< one per round
   void add(const ErrorFigures& error, double round_passes, double cpu_seconds);
 };

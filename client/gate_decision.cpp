@@ -1,6 +1,7 @@
 #include "client/gate_decision.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "proto/status.h"
@@ -32,6 +33,29 @@ std::optional<Estimate> unpaired(double now, double before, const GateFigures& a
   const double ea = *sa * *a.relmse / now, eb = *sb * *b.relmse / before;
   return Estimate{std::log(now / before), std::sqrt(ea * ea + eb * eb),
                   std::numeric_limits<double>::infinity()};
+}
+
+bool know_blocks(const GateFigures& a, const GateFigures& b) {
+  return a.block_relmse.size() >= 2 && a.block_relmse.size() == b.block_relmse.size();
+}
+
+bool know_variance(const GateFigures& a, const GateFigures& b) {
+  return a.variance && b.variance && *a.variance > 0 && *b.variance > 0 && a.block_variance.size() >= 2 &&
+         a.block_variance.size() == b.block_variance.size();
+}
+
+/// relMSE of both, less the reference's floor where both know it.
+std::pair<double, double> floors_off(const GateFigures& now, const GateFigures& before) {
+  const bool both = now.floor && before.floor;
+  return {*now.relmse - (both ? *now.floor : 0), *before.relmse - (both ? *before.floor : 0)};
+}
+
+/// Blocks of relMSE that sum up to `above` once the floor is taken off evenly.
+std::vector<double> blocks_above(const GateFigures& figures, double above) {
+  std::vector<double> blocks = rescaled(figures.block_relmse, *figures.relmse);
+  const double floor = (*figures.relmse - above) / static_cast<double>(blocks.size());
+  for (double& v : blocks) v -= floor;
+  return blocks;
 }
 
 }  // namespace
@@ -68,25 +92,34 @@ Verdict worst(const std::vector<Verdict>& verdicts) {
 
 LogRatio error_ratio(const GateFigures& now, const GateFigures& before) {
   if (!now.relmse || !before.relmse) return {{}, "no error figure without a reference"};
-  const bool both = now.floor && before.floor;
-  const double floor_now = both ? *now.floor : 0, floor_before = both ? *before.floor : 0;
-  const double a = *now.relmse - floor_now, b = *before.relmse - floor_before;
   const Estimate passes{std::log(now.passes / before.passes), 0, std::numeric_limits<double>::infinity()};
   if (*now.relmse == 0 && *before.relmse == 0) return {passes, ""};
-  if (!(a > 0 && b > 0)) return {{}, "the error lies at the reference's noise floor"};
   std::optional<Estimate> ratio;
-  if (now.block_relmse.size() >= 2 && now.block_relmse.size() == before.block_relmse.size()) {
-    std::vector<double> blocks_a = rescaled(now.block_relmse, *now.relmse);
-    std::vector<double> blocks_b = rescaled(before.block_relmse, *before.relmse);
-    const double share = 1 / static_cast<double>(blocks_a.size());
-    for (double& v : blocks_a) v -= floor_now * share;
-    for (double& v : blocks_b) v -= floor_before * share;
-    ratio = paired_log_ratio(blocks_a, blocks_b);
+  if (know_variance(now, before)) {
+    ratio = paired_log_ratio(rescaled(now.block_variance, *now.variance),
+                             rescaled(before.block_variance, *before.variance));
   } else {
-    ratio = unpaired(a, b, now, before);
+    const auto [a, b] = floors_off(now, before);
+    if (!(a > 0 && b > 0)) return {{}, "the error lies at the reference's noise floor"};
+    ratio = know_blocks(now, before) ? paired_log_ratio(blocks_above(now, a), blocks_above(before, b))
+                                     : unpaired(a, b, now, before);
   }
   if (!ratio) return {{}, "nothing says how sure the error figures are"};
   return {sum(*ratio, passes), ""};
+}
+
+std::optional<LogRatio> excess_ratio(const GateFigures& now, const GateFigures& before) {
+  if (!now.relmse || !before.relmse || !know_variance(now, before) || !know_blocks(now, before))
+    return std::nullopt;
+  const auto [a, b] = floors_off(now, before);
+  if (!(a > 0 && b > 0)) return LogRatio{{}, "the error lies at the reference's noise floor"};
+  const std::vector<double> error_a = blocks_above(now, a), error_b = blocks_above(before, b);
+  const std::vector<double> variance_a = rescaled(now.block_variance, *now.variance);
+  const std::vector<double> variance_b = rescaled(before.block_variance, *before.variance);
+  const auto ratio = paired_log_product(
+      std::array{Factor{error_a, 1}, Factor{variance_a, -1}, Factor{error_b, -1}, Factor{variance_b, 1}});
+  if (!ratio) return LogRatio{{}, "nothing says how sure the error figures are"};
+  return LogRatio{ratio, ""};
 }
 
 LogRatio cpu_ratio(const GateFigures& now, const GateFigures& before, const Estimate& scale, bool measured) {

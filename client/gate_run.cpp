@@ -47,8 +47,12 @@ GateMix mix_of(const Json& json) {
   f.floor = number_at(json, "reference_floor");
   if (json.contains("relmse_ci") && json["relmse_ci"].is_array())
     f.relmse_ci = {json["relmse_ci"].at(0).get<double>(), json["relmse_ci"].at(1).get<double>()};
-  if (json.contains("error_blocks") && json["error_blocks"].is_object())
-    f.block_relmse = json["error_blocks"].at("relmse").get<std::vector<double>>();
+  f.variance = number_at(json, "relative_variance");
+  if (json.contains("error_blocks") && json["error_blocks"].is_object()) {
+    const Json& blocks = json["error_blocks"];
+    f.block_relmse = blocks.at("relmse").get<std::vector<double>>();
+    if (blocks.contains("variance")) f.block_variance = blocks["variance"].get<std::vector<double>>();
+  }
   return mix;
 }
 
@@ -136,7 +140,7 @@ std::optional<Estimate> scale_of(const GateRun& now, const GateRun& before, cons
 
 GateRow cpu_row(const GateMix& now, const GateMix& before, const GateRun& run, const GateRun& base,
                 const GateOptions& options) {
-  GateRow row{now.label, "CPU per pass", {}, options.cpu_tolerance, {}, ""};
+  GateRow row{now.label, std::string(kCpuPerPass), {}, options.cpu_tolerance, {}, ""};
   const std::optional<Estimate> scale = scale_of(run, base, options);
   if (!scale) {
     row.note = "not judged: a run without calibration";
@@ -151,13 +155,12 @@ GateRow cpu_row(const GateMix& now, const GateMix& before, const GateRun& run, c
 }
 
 /// How much more of a picture an inconclusive row would want if nothing has changed. Not how many more
-/// passes: one run's relMSE is a sum over pixels of squares of one error each, so how sure it is depends on
-/// the pixels alone.
+/// passes: a run has few groups of them, however long it is, and relMSE one square a pixel.
 std::string advice(const GateRow& row) {
   const Estimate& e = *row.log_ratio;
   const double half = interval({0, e.standard_error, e.degrees_of_freedom}, 1 - 2 * kMissed).high;
   const double limit = std::log1p(row.tolerance);
-  if (row.figure != "error per pass" || !(half > 0)) return "";
+  if (row.figure == kCpuPerPass || !(half > 0)) return "";
   return fmt::format(
       "±{:.1f} % is too uncertain for {:.3g} %: a picture of about {:.1f} times the lit pixels would do",
       100 * std::expm1(half), 100 * row.tolerance, std::max(1.0, std::pow(2 * half / limit, 2)));
@@ -177,6 +180,21 @@ absl::StatusOr<NoiseFloor> noise_from_json(const Json& json) {
   }
 }
 
+std::vector<GateRow> error_rows(const std::string& mix, const GateFigures& now, const GateFigures& before,
+                                const GateOptions& options) {
+  const LogRatio error = error_ratio(now, before);
+  std::vector<GateRow> rows = {
+      {mix, "error per pass", error.estimate, options.tolerance, {}, error.why_not}};
+  if (const auto excess = excess_ratio(now, before))
+    rows.push_back({mix,
+                    "error/variance",
+                    excess->estimate,
+                    std::max(options.tolerance, kExcessTolerance),
+                    {},
+                    excess->why_not});
+  return rows;
+}
+
 void judge_rows(GateResult& result) {
   const auto judged = [](const GateRow& row) { return row.log_ratio && row.note.empty(); };
   const auto figures = std::count_if(result.rows.begin(), result.rows.end(), judged);
@@ -185,7 +203,7 @@ void judge_rows(GateResult& result) {
     if (judged(row)) {
       row.verdict = judge(*row.log_ratio, row.tolerance, figures);
       if (row.verdict == Verdict::kInconclusive) row.note = advice(row);
-    } else if (!row.log_ratio && row.figure == "error per pass") {
+    } else if (!row.log_ratio && row.figure != kCpuPerPass) {
       row.verdict = Verdict::kInconclusive;
     }
     if (row.verdict) verdicts.push_back(*row.verdict);
@@ -207,9 +225,8 @@ absl::StatusOr<GateResult> gate_runs(const Json& now_json, const std::string& no
     if (same == now.mixes.end())
       return invalid_input("{}: mix {} of the baseline is missing", now_name, old.label);
     gated.insert(old.label);
-    const LogRatio error = error_ratio(same->figures, old.figures);
-    result.rows.push_back(
-        {old.label, "error per pass", error.estimate, options.tolerance, {}, error.why_not});
+    for (GateRow& row : error_rows(old.label, same->figures, old.figures, options))
+      result.rows.push_back(std::move(row));
     result.rows.push_back(cpu_row(*same, old, now, before, options));
   }
   for (const GateMix& mix : now.mixes)
@@ -228,8 +245,8 @@ absl::StatusOr<Json> baseline_of(const Json& run, const std::string& name) {
     out["mixes"] = Json::array();
     for (const Json& mix : run["mixes"]) {
       Json kept;
-      for (const char* key : {"mix", "passes", "cpu_seconds", "relmse", "relmse_ci", "reference_floor",
-                              "calibration", "error_blocks"})
+      for (const char* key : {"mix", "passes", "cpu_seconds", "relmse", "relmse_ci", "relative_variance",
+                              "reference_floor", "calibration", "error_blocks"})
         if (mix.contains(key)) kept[key] = mix[key];
       out["mixes"].push_back(kept);
     }

@@ -23,8 +23,10 @@ struct GateOptions {
   std::optional<NoiseFloor> noise;
 };
 
+inline constexpr std::string_view kCpuPerPass = "CPU per pass";
+
 struct GateRow {
-  std::string mix, figure;  ///< "error per pass", "CPU per pass"
+  std::string mix, figure;  ///< "error per pass", "error/variance" or kCpuPerPass
   std::optional<Estimate> log_ratio;
   double tolerance = 0;
   std::optional<Verdict> verdict;  ///< none: shown, not judged
@@ -36,6 +38,10 @@ struct GateResult {
   std::vector<GateRow> rows;
   std::vector<std::string> notes;
 };
+
+/// The rows of a mix that are about its error: error_ratio() and, where it is known, excess_ratio().
+std::vector<GateRow> error_rows(const std::string& mix, const GateFigures& now, const GateFigures& before,
+                                const GateOptions& options);
 
 /// Judges the rows that have an estimate and no verdict yet, and the whole. Rows whose note says that they
 /// are only shown keep no verdict.

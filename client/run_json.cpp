@@ -57,9 +57,14 @@ Json calibration_json(const Calibration& c) {
 
 /// Six digits: the blocks are many, and their noise is far larger.
 Json blocks_json(const ErrorBlocks& blocks) {
-  Json relmse = Json::array();
-  for (const double value : blocks.relmse) relmse.push_back(std::stod(fmt::format("{:.6g}", value)));
-  return {{"edge", blocks.edge}, {"relmse", relmse}};
+  const auto shortened = [](const std::vector<double>& values) {
+    Json out = Json::array();
+    for (const double value : values) out.push_back(std::stod(fmt::format("{:.6g}", value)));
+    return out;
+  };
+  Json json = {{"edge", blocks.edge}, {"relmse", shortened(blocks.relmse)}};
+  if (!blocks.variance.empty()) json["variance"] = shortened(blocks.variance);
+  return json;
 }
 
 Json mix_json(const RunSummary& summary, const MixSummary& mix, const MixRecord& record) {
@@ -87,6 +92,7 @@ Json mix_json(const RunSummary& summary, const MixSummary& mix, const MixRecord&
           {"trimmed_relmse", e ? Json(e->trimmed_relmse) : Json(nullptr)},
           {"mse", e ? Json(e->mse) : Json(nullptr)},
           {"reference_floor", e ? or_null(e->reference_floor) : Json(nullptr)},
+          {"relative_variance", e ? or_null(e->variance) : Json(nullptr)},
           {"estimated_relmse", own ? Json(own->relmse) : Json(nullptr)},
           {"estimated_relmse_ci", own ? interval_json(own->relmse_ci) : Json(nullptr)},
           {"regions", regions},

@@ -1,5 +1,6 @@
 #include "film/estimate.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -56,21 +57,25 @@ Estimate sum(const Estimate& a, const Estimate& b) {
 }
 
 std::optional<Estimate> paired_log_ratio(std::span<const double> a, std::span<const double> b) {
-  PENUMBRA_CHECK(a.size() == b.size());
-  const size_t n = a.size();
-  const double sum_a = std::accumulate(a.begin(), a.end(), 0.0);
-  const double sum_b = std::accumulate(b.begin(), b.end(), 0.0);
-  if (n < 2 || !(sum_a > 0 && sum_b > 0) || !std::isfinite(sum_a) || !std::isfinite(sum_b))
-    return std::nullopt;
-  std::vector<double> deviations(n);
-  double squares = 0;
-  for (size_t i = 0; i < n; ++i) {
-    deviations[i] = a[i] / sum_a - b[i] / sum_b;
-    squares += deviations[i] * deviations[i];
+  return paired_log_product(std::array{Factor{a, 1}, Factor{b, -1}});
+}
+
+std::optional<Estimate> paired_log_product(std::span<const Factor> factors) {
+  PENUMBRA_CHECK(!factors.empty());
+  const size_t n = factors[0].parts.size();
+  std::vector<double> deviations(n, 0.0);
+  double value = 0;
+  for (const auto& [parts, power] : factors) {
+    PENUMBRA_CHECK(parts.size() == n);
+    const double sum = std::accumulate(parts.begin(), parts.end(), 0.0);
+    if (n < 2 || !(sum > 0) || !std::isfinite(sum)) return std::nullopt;
+    value += power * std::log(sum);
+    for (size_t i = 0; i < n; ++i) deviations[i] += power * (parts[i] / sum);
   }
+  double squares = 0;
+  for (const double d : deviations) squares += d * d;
   const double count = static_cast<double>(n);
-  return Estimate{std::log(sum_a / sum_b), std::sqrt(squares * count / (count - 1)),
-                  degrees_behind(deviations)};
+  return Estimate{value, std::sqrt(squares * count / (count - 1)), degrees_behind(deviations)};
 }
 
 std::optional<Estimate> mean_of(std::span<const double> values) {

@@ -34,6 +34,13 @@ Estimate sum(const Estimate& a, const Estimate& b);
 /// Equal lists give 0 ± 0. Nothing with fewer than two parts or a sum that is not positive and finite.
 std::optional<Estimate> paired_log_ratio(std::span<const double> a, std::span<const double> b);
 
+/// log of Π_k (Σ_i parts_k[i])^(power_k), all lists of the same parts: deviations Σ_k power_k parts_k[i] / (sum of k).
+struct Factor {
+  std::span<const double> parts;
+  double power = 1;
+};
+std::optional<Estimate> paired_log_product(std::span<const Factor> factors);
+
 /// Mean of the values with its standard error, n - 1 degrees of freedom. Nothing with fewer than two.
 std::optional<Estimate> mean_of(std::span<const double> values);
 

@@ -22,11 +22,13 @@ constexpr int64_t kMostBlocks = 1024;
 struct PixelErrors {
   PixelRect region;
   std::vector<double> relative;
+  std::vector<double> variance;  ///< empty without the image's variance layer
 
-  double at(int x, int y) const {
-    return relative[static_cast<size_t>(y - region.y0) * static_cast<size_t>(region.width()) +
-                    static_cast<size_t>(x - region.x0)];
+  size_t index(int x, int y) const {
+    return static_cast<size_t>(y - region.y0) * static_cast<size_t>(region.width()) +
+           static_cast<size_t>(x - region.x0);
   }
+  double at(int x, int y) const { return relative[index(x, y)]; }
 };
 
 /// Sum and standard error of the pixels of each cell: appends deviations whose squares sum up to the
@@ -55,6 +57,13 @@ std::optional<ConfidenceInterval> interval_of(const PixelErrors& errors, double 
                       kConfidence);
 }
 
+double mean_over(const PixelErrors& errors, const std::vector<double>& values, const PixelRect& rect) {
+  double sum = 0;
+  for (int y = rect.y0; y < rect.y1; ++y)
+    for (int x = rect.x0; x < rect.x1; ++x) sum += values[errors.index(x, y)];
+  return sum / static_cast<double>(rect.area());
+}
+
 ErrorBlocks blocks_of(const PixelErrors& errors) {
   ErrorBlocks blocks;
   blocks.edge = kLeastBlockEdge;
@@ -63,10 +72,8 @@ ErrorBlocks blocks_of(const PixelErrors& errors) {
   };
   while (count(blocks.edge) > kMostBlocks) blocks.edge *= 2;
   for (const PixelRect& rect : block_grid(errors.region, blocks.edge)) {
-    double sum = 0;
-    for (int y = rect.y0; y < rect.y1; ++y)
-      for (int x = rect.x0; x < rect.x1; ++x) sum += errors.at(x, y);
-    blocks.relmse.push_back(sum / static_cast<double>(rect.area()));
+    blocks.relmse.push_back(mean_over(errors, errors.relative, rect));
+    if (!errors.variance.empty()) blocks.variance.push_back(mean_over(errors, errors.variance, rect));
   }
   return blocks;
 }
@@ -110,7 +117,7 @@ absl::Status check_region(const FilmImage& image, const FilmImage& reference, co
 
 /// What one pixel adds, channels averaged.
 struct PixelError {
-  double relative = 0, squared = 0, floor = 0;
+  double relative = 0, squared = 0, floor = 0, variance = 0;
 };
 
 PixelError pixel_error(const FilmImage& image, const FilmImage& reference, int x, int y, double epsilon) {
@@ -121,6 +128,7 @@ PixelError pixel_error(const FilmImage& image, const FilmImage& reference, int x
     e.relative += d * d / scale / 3;
     e.squared += d * d / 3;
     if (!reference.variance.empty()) e.floor += reference.variance[j + c] / scale / 3;
+    if (!image.variance.empty()) e.variance += image.variance[i + c] / scale / 3;
   }
   return e;
 }
@@ -133,21 +141,24 @@ absl::StatusOr<ErrorFigures> compare(const FilmImage& image, const FilmImage& re
   ErrorFigures figures;
   figures.region = region.value_or(image.window);
   RETURN_IF_ERROR(check_region(image, reference, figures.region));
-  PixelErrors errors{figures.region, {}};
+  PixelErrors errors{figures.region, {}, {}};
   errors.relative.reserve(static_cast<size_t>(figures.region.area()));
   PixelError total;
   for (int y = figures.region.y0; y < figures.region.y1; ++y)
     for (int x = figures.region.x0; x < figures.region.x1; ++x) {
       const PixelError e = pixel_error(image, reference, x, y, epsilon);
       errors.relative.push_back(e.relative);
+      if (!image.variance.empty()) errors.variance.push_back(e.variance);
       total.relative += e.relative;
       total.squared += e.squared;
       total.floor += e.floor;
+      total.variance += e.variance;
     }
   const auto pixels = static_cast<double>(figures.region.area());
   figures.relmse = total.relative / pixels;
   figures.mse = total.squared / pixels;
   if (!reference.variance.empty()) figures.reference_floor = total.floor / pixels;
+  if (!image.variance.empty()) figures.variance = total.variance / pixels;
   figures.relmse_ci = interval_of(errors, total.relative);
   figures.blocks = blocks_of(errors);
   figures.trimmed_relmse = trimmed_mean(std::move(errors.relative), kTrimmedShare);

@@ -17,6 +17,8 @@ inline constexpr double kRelMseEpsilon = 1e-2;
 struct ErrorBlocks {
   int edge = 0;                ///< pixels, a power of two
   std::vector<double> relmse;  ///< row by row
+  /// ErrorFigures::variance of every block; empty without it.
+  std::vector<double> variance = {};
 };
 
 /// All means are over pixels and channels of the compared region; I the image, R the reference.
@@ -30,6 +32,10 @@ struct ErrorFigures {
   /// mean of s²/(R²+ε), s the reference's standard error: what relMSE a perfect image would show.
   /// Nothing for a reference without stderr or variance layers.
   std::optional<double> reference_floor;
+  /// mean of s²/(R²+ε), s the image's standard error: relMSE of an unbiased image over all seeds, as this one's
+  /// own scatter tells. Less noisy than relmse, of which every pixel is one square; blind to bias.
+  /// Nothing for an image without a variance layer.
+  std::optional<double> variance;
   /// At most 1024, so that two runs can be compared place by place (client/gate).
   ErrorBlocks blocks;
 };

@@ -85,6 +85,52 @@ TEST(GateRuns, ALargerErrorIsWorse) {
   EXPECT_EQ(gate_json(*result)["verdict"], "worse");
 }
 
+RunRecord run_with_variance() {
+  RunRecord run = gated_run();
+  for (MixRecord& mix : run.mixes) {
+    mix.error->variance = mix.error->relmse;
+    mix.error->blocks.variance = mix.error->blocks.relmse;
+  }
+  return run;
+}
+
+const GateRow& row_of(const GateResult& result, const std::string& figure) {
+  for (const GateRow& row : result.rows)
+    if (row.figure == figure) return row;
+  PENUMBRA_CHECK(false);
+}
+
+TEST(GateRuns, VarianceSaysTheErrorWhereBothRunsKnowIt) {
+  RunRecord now = run_with_variance();
+  now.mixes[0].error->relmse *= 1.1;  // one draw of the noise
+  now.mixes[0].error->variance = *now.mixes[0].error->variance * 1.2;
+  const auto result = gate(run_json(now), run_json(run_with_variance()));
+  ASSERT_TRUE(result.ok()) << result.status();
+  EXPECT_NEAR(row_of(*result, "error per pass").log_ratio->value, std::log(1.2), 1e-12);
+  EXPECT_EQ(result->verdict, Verdict::kWorse);
+  const auto old_baseline = gate(run_json(now), run_json(gated_run()));
+  EXPECT_NEAR(row_of(*old_baseline, "error per pass").log_ratio->value, std::log(1.1), 1e-12);
+}
+
+TEST(GateRuns, ErrorThatTheVarianceDoesNotKnowOfIsWorse) {
+  RunRecord now = run_with_variance();
+  now.mixes[0].error->relmse *= 1.4;  // bias² of 0.4 of the variance
+  const auto result = gate(run_json(now), run_json(run_with_variance()));
+  ASSERT_TRUE(result.ok()) << result.status();
+  EXPECT_EQ(row_of(*result, "error per pass").verdict, Verdict::kPass);
+  EXPECT_EQ(row_of(*result, "error/variance").verdict, Verdict::kWorse);
+  EXPECT_NEAR(row_of(*result, "error/variance").log_ratio->value, std::log(1.4), 1e-12);
+  EXPECT_EQ(result->verdict, Verdict::kWorse);
+}
+
+TEST(GateRuns, ABiasThatTheBaselineHasTooIsNotNew) {
+  RunRecord biased = run_with_variance();
+  for (MixRecord& mix : biased.mixes) mix.error->relmse *= 3;
+  const auto result = gate(run_json(biased), run_json(biased));
+  ASSERT_TRUE(result.ok()) << result.status();
+  EXPECT_EQ(result->verdict, Verdict::kPass) << gate_text(*result);
+}
+
 TEST(GateRuns, MoreCpuIsWorse) {
   RunRecord now = gated_run();
   now.summary.mixes[0].cpu_seconds *= 1.5;
@@ -196,6 +242,23 @@ TEST(RowsOf, BuildsAreComparedRoundByRound) {
   EXPECT_NEAR(rows[0].log_ratio->value, std::log(2), 1e-9) << "as much error with twice the passes";
   EXPECT_NEAR(rows[1].log_ratio->value, std::log(1.25), 0.01);
   EXPECT_LT(rows[1].log_ratio->standard_error, 0.01) << "the rounds' drift cancels";
+}
+
+TEST(RowsOf, VarianceIsOfAllRoundsOrOfNone) {
+  ErrorFigures with, without;
+  with.relmse = without.relmse = 0.5;
+  with.blocks.relmse = without.blocks.relmse = with.blocks.variance = {0.4, 0.6};
+  with.variance = 0.5;
+  RoundSums all, some;
+  for (int r = 0; r < 3; ++r) {
+    all.add(with, 16, 1);
+    some.add(r == 1 ? without : with, 16, 1);
+  }
+  EXPECT_EQ(all.variance, 3 * 16 * 0.5);
+  EXPECT_THAT(all.block_variance, testing::ElementsAre(3 * 16 * 0.4, 3 * 16 * 0.6));
+  EXPECT_FALSE(some.variance.has_value());
+  EXPECT_EQ(rows_of("m", all, all, {}).size(), 3u);
+  EXPECT_EQ(rows_of("m", all, some, {}).size(), 2u);
 }
 
 TEST(NoiseFloor, IsReadFromWhatCalibratePrints) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -52,6 +53,13 @@ TEST(PairedLogRatio, WhatIsCommonToBothCancels) {
   const auto ratio = paired_log_ratio(twice, hard);
   EXPECT_NEAR(ratio->value, std::log(2), 1e-12);
   EXPECT_NEAR(ratio->standard_error, 0, 1e-12);
+  const std::vector<double> third{1, 2, 3, 4, 5};
+  const auto product = paired_log_product(std::array{Factor{twice, 2}, Factor{hard, -1}, Factor{third, 0.5}});
+  ASSERT_TRUE(product.has_value());
+  double sums[3] = {0, 0, 0};
+  for (size_t i = 0; i < hard.size(); ++i) sums[0] += twice[i], sums[1] += hard[i];
+  for (const double v : third) sums[2] += v;
+  EXPECT_NEAR(product->value, std::log(sums[0] * sums[0] / sums[1] * std::sqrt(sums[2])), 1e-12);
   EXPECT_FALSE(paired_log_ratio(std::vector<double>{1}, std::vector<double>{1}).has_value());
   EXPECT_FALSE(paired_log_ratio(std::vector<double>{1, -1}, std::vector<double>{1, 1}).has_value());
 }

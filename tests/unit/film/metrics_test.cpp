@@ -46,6 +46,20 @@ TEST(Compare, WithoutNoiseOfTheReferenceThereIsNoFloor) {
   EXPECT_FALSE(e->relmse_ci.has_value()) << "nothing differs";
 }
 
+TEST(Compare, SaysWhatTheImagesOwnVarianceWouldShow) {
+  FilmImage image = constant(40, 20, 2), reference = constant(40, 20, 1);
+  EXPECT_FALSE(compare(image, reference)->variance.has_value());
+  EXPECT_TRUE(compare(image, reference)->blocks.variance.empty());
+  image.variance.assign(image.rgb.size(), 0.04f);
+  for (size_t i = 0; i < 3 * 40 * 4; ++i) image.variance[i] = 0.08f;  // rows 0 to 3
+  const auto e = compare(image, reference);
+  ASSERT_TRUE(e.ok());
+  EXPECT_NEAR(*e->variance, (0.08 * 4 + 0.04 * 16) / 20 / 1.01, 1e-8);
+  ASSERT_EQ(e->blocks.variance.size(), e->blocks.relmse.size());
+  EXPECT_NEAR(e->blocks.variance.front(), 0.08 / 1.01, 1e-8);
+  EXPECT_NEAR(e->blocks.variance.back(), 0.04 / 1.01, 1e-8);
+}
+
 TEST(Compare, TrimsTheWorstThousandth) {
   FilmImage image = constant(100, 20, 1);
   const FilmImage reference = constant(100, 20, 1);
