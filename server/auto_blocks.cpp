@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "proto/blocks.h"
+#include "proto/status.h"
 
 namespace penumbra {
 namespace {
@@ -14,8 +15,6 @@ namespace {
 constexpr double kOwnWeight = 4;
 // What every block is presumed to have of the tile's mean, whatever the pilot has (not) seen there.
 constexpr double kCommonPart = 0.2;
-// No block has less than this share of the passes of the one with the most.
-constexpr double kLeastBlockShare = 0.25;
 // Shares that save less than this are not worth the groups that they cut smaller.
 constexpr double kLeastGain = 0.05;
 
@@ -62,7 +61,8 @@ double squared_deviations(const PixelRect& tile, const std::vector<BlockCost>& b
   return std::accumulate(all.begin(), all.end(), 0.0);
 }
 
-SharedOut shared_out(const PixelRect& tile, const std::vector<BlockCost>& blocks) {
+SharedOut shared_out(const PixelRect& tile, const std::vector<BlockCost>& blocks, double least) {
+  PENUMBRA_CHECK(kLeastBlockShare <= least && least <= 1);
   if (blocks.size() != block_count(tile)) return {};
   const std::vector<double> variances = squares(tile, blocks);
   std::vector<double> costs;
@@ -78,7 +78,7 @@ SharedOut shared_out(const PixelRect& tile, const std::vector<BlockCost>& blocks
   double left = 0, left_alike = 0, spent = 0, spent_alike = 0;
   for (size_t b = 0; b < blocks.size(); ++b) {
     const auto area = static_cast<double>(block_rect(tile, b).area());
-    const double share = std::ceil(kWholeShare * std::max(weights[b] / largest, kLeastBlockShare));
+    const double share = std::ceil(kWholeShare * std::max(weights[b] / largest, least));
     out.shares.push_back(static_cast<uint8_t>(share));
     left += area * variance[b] * kWholeShare / share;
     left_alike += area * variance[b];

@@ -21,7 +21,12 @@ struct SharedOut {
 /// sum of their variances, but far better known from few passes. 0 if nothing was measured.
 double squared_deviations(const PixelRect& tile, const std::vector<BlockCost>& blocks);
 
-/// From what a pilot has measured in each block of the tile; no shares if it has not.
-SharedOut shared_out(const PixelRect& tile, const std::vector<BlockCost>& blocks);
+/// No block has less than this share of the passes of the one with the most.
+inline constexpr double kLeastBlockShare = 0.25;
+
+/// From what a pilot has measured in each block of the tile; no shares if it has not. No share is below `least`, which
+/// lies in [kLeastBlockShare, 1].
+SharedOut shared_out(const PixelRect& tile, const std::vector<BlockCost>& blocks,
+                     double least = kLeastBlockShare);
 
 }  // namespace penumbra

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 
+#include "proto/blocks.h"
 #include "proto/status.h"
 #include "server/auto_blocks.h"
 #include "server/auto_compare.h"
@@ -29,6 +30,10 @@ constexpr double kPilotShare = 0.08;
 constexpr double kUnboundedRatio = 3;
 // No tile gets fewer than this share of the mean passes, whatever the pilot has (not) seen there.
 constexpr double kLeastShare = 0.4;
+// No pixel gets fewer passes than this, nor than kLeastPart of the mean where that is less: a pilot of four passes has not
+// seen what happens in one of ten. The kitchen at 16 passes a pixel: blocks with three or four of them had its
+// largest errors, and the plan was no better than one without blocks.
+constexpr double kLeastPasses = 8, kLeastPart = 0.6;
 constexpr double kMostPasses = 1e12;  // far beyond any run; keeps conversions defined
 
 /// One tile's best candidate, and what a pass of it costs and leaves: of the whole tile, with its blocks'
@@ -100,7 +105,8 @@ size_t best_of(const Measurements& m, const std::vector<double>& variance, const
   return best ? *best : best_of(m, variance, cost, true);
 }
 
-std::vector<Choice> choices(const std::vector<PixelRect>& tiles, const Measurements& m) {
+/// Of each tile its best candidate; blocks all alike.
+std::vector<Choice> whole_choices(const std::vector<PixelRect>& tiles, const Measurements& m) {
   std::vector<double> areas;
   for (const PixelRect& tile : tiles) areas.push_back(static_cast<double>(tile.area()));
   const auto columns = static_cast<size_t>(std::count_if(
@@ -119,13 +125,21 @@ std::vector<Choice> choices(const std::vector<PixelRect>& tiles, const Measureme
   }
   found = tile_variances(tiles, m, std::move(found));
   std::vector<Choice> out;
-  for (size_t t = 0; t < areas.size(); ++t) {
-    const double whole_cost = areas[t] * cost[t][chosen[t]];
-    SharedOut shared = shared_out(tiles[t], m.blocks[t]);
-    out.push_back({m.candidates[chosen[t]], found[t] * shared.error, whole_cost * shared.cost,
-                   std::move(shared.shares)});
-  }
+  for (size_t t = 0; t < areas.size(); ++t)
+    out.push_back({m.candidates[chosen[t]], found[t], areas[t] * cost[t][chosen[t]], {}});
   return out;
+}
+
+/// With blocks' shares, none below the tile's `least`.
+std::vector<Choice> with_blocks(const std::vector<PixelRect>& tiles, const Measurements& m,
+                                std::vector<Choice> whole, const std::vector<double>& least) {
+  for (size_t t = 0; t < tiles.size(); ++t) {
+    SharedOut shared = shared_out(tiles[t], m.blocks[t], least[t]);
+    whole[t].variance *= shared.error;
+    whole[t].cost *= shared.cost;
+    whole[t].shares = std::move(shared.shares);
+  }
+  return whole;
 }
 
 /// Passes λ w_t, but nowhere less than kLeastShare of their mean nor than `least`.
@@ -209,6 +223,35 @@ std::vector<int64_t> passes_of(const JobSpec& spec, const std::vector<Choice>& t
   return out;
 }
 
+/// Mean over the picture's pixels.
+double mean_passes(const std::vector<PixelRect>& tiles, const std::vector<Choice>& choices,
+                   const std::vector<int64_t>& passes) {
+  double sum = 0, area = 0;
+  for (size_t t = 0; t < tiles.size(); ++t) {
+    const auto pixels = static_cast<double>(tiles[t].area());
+    sum += pixels * mean_share(tiles[t], choices[t].shares) * static_cast<double>(passes[t]);
+    area += pixels;
+  }
+  return sum / area;
+}
+
+/// Candidates and shares follow from the pilot and the budget alone, so that they stay when totals are planned anew.
+/// What a least number of passes means for shares depends on the tiles' passes, and these on the shares: a few rounds settle it.
+std::vector<Choice> choices(const JobSpec& spec, const std::vector<PixelRect>& tiles, const Measurements& m) {
+  const std::vector<Choice> whole = whole_choices(tiles, m);
+  std::vector<double> least(tiles.size(), kLeastBlockShare);
+  std::vector<Choice> chosen = with_blocks(tiles, m, whole, least);
+  if (std::holds_alternative<SppBudget>(spec.budget)) return chosen;
+  for (int round = 0; round < 3; ++round) {
+    const std::vector<int64_t> passes = passes_of(spec, chosen, m.pilot_seconds, {});
+    const double wanted = std::min(kLeastPasses, kLeastPart * mean_passes(tiles, chosen, passes));
+    for (size_t t = 0; t < tiles.size(); ++t)
+      least[t] = std::clamp(wanted / static_cast<double>(passes[t]), kLeastBlockShare, 1.0);
+    chosen = with_blocks(tiles, m, whole, least);
+  }
+  return chosen;
+}
+
 }  // namespace
 
 int pilot_blocks(const JobSpec& spec, const PixelRect& tile) {
@@ -224,7 +267,7 @@ absl::StatusOr<AutoPlan> plan_auto(const JobSpec& spec, const std::vector<PixelR
                                    const std::vector<std::vector<MixCost>>& pilot, size_t number,
                                    const AutoSpending& spending) {
   ASSIGN_OR_RETURN(const Measurements m, measurements(spec, tiles, pilot, number));
-  const std::vector<Choice> chosen = choices(tiles, m);
+  const std::vector<Choice> chosen = choices(spec, tiles, m);
   const std::vector<int64_t> passes = passes_of(spec, chosen, m.pilot_seconds, spending);
   AutoPlan plan{automatic_mixes(spec.mixes)[number], auto_candidates(), {}};
   const bool counted = std::holds_alternative<SppBudget>(spec.budget);  // so many in every pixel
@@ -239,7 +282,7 @@ absl::StatusOr<std::vector<double>> auto_pass_costs(const JobSpec& spec, const s
                                                     size_t number) {
   ASSIGN_OR_RETURN(const Measurements m, measurements(spec, tiles, pilot, number));
   std::vector<double> costs;
-  for (const Choice& choice : choices(tiles, m)) costs.push_back(choice.cost);
+  for (const Choice& choice : choices(spec, tiles, m)) costs.push_back(choice.cost);
   return costs;
 }
 
