@@ -165,16 +165,40 @@ TEST(AutoPlanner, FewPixelsDoNotOverruleTheImage) {
     EXPECT_NE(tile.candidate, 3);
 }
 
+/// What a pilot of four passes has not seen may happen in one of ten.
+TEST(AutoPlanner, NoPixelHasFewerThanEightPassesOrAPartOfTheMean) {
+  for (const double seconds : {0.35, 2.0, 20.0}) {
+    Pilot pilot = uniform_pilot(4);
+    for (size_t t = 0; t < 4; ++t) set_whole(pilot, static_cast<int>(t), 0, 1, 0.01f);
+    for (size_t k = 0; k < auto_candidates().size(); ++k) set(pilot, 2, static_cast<int>(k), {100, 1e-6, 1});
+    const JobSpec spec = spec_of(4, CpuSecondsBudget{seconds});
+    const AutoPlan plan = planned(spec, pilot);
+    double mean = 0, least = 1e9;
+    for (const TilePlan& tile : plan.tiles) {
+      mean += static_cast<double>(tile.passes) * mean_share(tiles_of(spec)[0], tile.shares) / 4;
+      ASSERT_TRUE(tile.shares.empty() || tile.shares.size() == 64u);
+      const int share =
+          tile.shares.empty() ? kWholeShare : *std::min_element(tile.shares.begin(), tile.shares.end());
+      least = std::min(least, static_cast<double>(tile.passes) * share / kWholeShare);
+    }
+    EXPECT_GE(least, 0.9 * std::min(8.0, 0.6 * mean)) << seconds << " s, " << mean << " passes";
+    if (seconds > 10) {
+      EXPECT_LT(least, 0.4 * mean) << "where passes are many, blocks may have few";
+    }
+  }
+}
+
 /// Where a lobe may be narrow a few pixels cannot tell how bright its rare bright samples are.
 TEST(AutoPlanner, TilesWithLobesAndThoseBesideThemTakeNoMixWithoutBsdf) {
   const JobSpec spec = spec_of(6, CpuSecondsBudget{10});
-  constexpr int kPoints = 4;  // sa:4
-  ASSERT_FALSE(is_bounded(auto_candidates()[kPoints]));
+  const auto& all = auto_candidates();
+  const auto points = static_cast<int>(std::find(all.begin(), all.end(), *parse_mix("sa:4")) - all.begin());
+  ASSERT_FALSE(is_bounded(all.at(static_cast<size_t>(points))));
   Pilot pilot = uniform_pilot(6);
-  for (int t = 0; t < 6; ++t) set(pilot, t, kPoints, {0.1});
+  for (int t = 0; t < 6; ++t) set(pilot, t, points, {0.1});
   pilot[1][1].lobed_pixels = 1;
   const AutoPlan plan = planned(spec, pilot);
-  for (size_t t = 0; t < 6; ++t) EXPECT_EQ(plan.tiles[t].candidate == kPoints, t > 2) << "tile " << t;
+  for (size_t t = 0; t < 6; ++t) EXPECT_EQ(plan.tiles[t].candidate == points, t > 2) << "tile " << t;
 }
 
 TEST(AutoPlanner, PassCountsPlanFromWorkAlone) {
