@@ -108,6 +108,14 @@ LogRatio error_ratio(const GateFigures& now, const GateFigures& before) {
   return {sum(*ratio, passes), ""};
 }
 
+std::optional<LogRatio> typical_ratio(const GateFigures& now, const GateFigures& before) {
+  if (!know_variance(now, before)) return std::nullopt;
+  const auto ratio = typical_log_ratio(now.block_variance, before.block_variance);
+  if (!ratio) return LogRatio{{}, "too few places vary"};
+  const Estimate passes{std::log(now.passes / before.passes), 0, std::numeric_limits<double>::infinity()};
+  return LogRatio{sum(*ratio, passes), ""};
+}
+
 std::optional<LogRatio> excess_ratio(const GateFigures& now, const GateFigures& before) {
   if (!now.relmse || !before.relmse || !know_variance(now, before) || !know_blocks(now, before))
     return std::nullopt;

@@ -55,6 +55,11 @@ struct LogRatio {
 /// sure it is.
 LogRatio error_ratio(const GateFigures& now, const GateFigures& before);
 
+/// The ratio of variance × passes that is typical of the blocks (typical_log_ratio): a change that is in all of
+/// the picture stands out here where a few outliers blur error_ratio(). Nothing where a run does not know the variance of
+/// its blocks.
+std::optional<LogRatio> typical_ratio(const GateFigures& now, const GateFigures& before);
+
 /// (relMSE - floor) / variance, new over old. Each is 1 for an unbiased image and grows with the square of its
 /// bias, or with what the samples have missed. A difference between reference and truth is in both.
 /// Nothing where a run does not know the variance of its blocks.

@@ -26,7 +26,7 @@ struct GateOptions {
 inline constexpr std::string_view kCpuPerPass = "CPU per pass";
 
 struct GateRow {
-  std::string mix, figure;  ///< "error per pass", "error/variance" or kCpuPerPass
+  std::string mix, figure;  ///< "error per pass", "typical error", "error/variance" or kCpuPerPass
   std::optional<Estimate> log_ratio;
   double tolerance = 0;
   std::optional<Verdict> verdict;  ///< none: shown, not judged
@@ -39,7 +39,8 @@ struct GateResult {
   std::vector<std::string> notes;
 };
 
-/// The rows of a mix that are about its error: error_ratio() and, where it is known, excess_ratio().
+/// The rows of a mix that are about its error: error_ratio() and, where they are known, typical_ratio()
+/// and excess_ratio().
 std::vector<GateRow> error_rows(const std::string& mix, const GateFigures& now, const GateFigures& before,
                                 const GateOptions& options);
 

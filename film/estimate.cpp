@@ -1,5 +1,6 @@
 #include "film/estimate.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -9,6 +10,21 @@
 #include "proto/status.h"
 
 namespace penumbra {
+namespace {
+
+// Of typical_log_ratio().
+constexpr size_t kLeastParts = 8;
+constexpr double kMostShare = 0.01, kMostPull = 0.5;
+
+/// Lowers the largest until none is more than `most` of the sum (most > 1 / their number).
+void cap_shares(std::vector<double>& weights, double most) {
+  for (int round = 0; round < 64; ++round) {
+    const double cap = most * std::accumulate(weights.begin(), weights.end(), 0.0);
+    for (double& w : weights) w = std::min(w, cap);
+  }
+}
+
+}  // namespace
 
 double degrees_behind(std::span<const double> deviations) {
   // Scaled by the largest, so that fourth powers stay in range.
@@ -75,6 +91,41 @@ std::optional<Estimate> paired_log_product(std::span<const Factor> factors) {
   double squares = 0;
   for (const double d : deviations) squares += d * d;
   const double count = static_cast<double>(n);
+  return Estimate{value, std::sqrt(squares * count / (count - 1)), degrees_behind(deviations)};
+}
+
+std::optional<Estimate> typical_log_ratio(std::span<const double> a, std::span<const double> b) {
+  PENUMBRA_CHECK(a.size() == b.size());
+  std::vector<double> weights, logs;
+  for (size_t i = 0; i < a.size(); ++i) {
+    if (!(a[i] > 0 && b[i] > 0)) continue;
+    weights.push_back(std::sqrt(a[i] * b[i]));
+    logs.push_back(std::log(a[i] / b[i]));
+  }
+  if (logs.size() < kLeastParts) return std::nullopt;
+  cap_shares(weights, std::max(kMostShare, 2 / static_cast<double>(logs.size())));
+  const auto pull = [&](size_t i, double value) {
+    return weights[i] * std::clamp(logs[i] - value, -kMostPull, kMostPull);
+  };
+  // Their sum falls as the value rises: bisection, to rounding.
+  auto [low, high] = std::minmax_element(logs.begin(), logs.end());
+  double least = *low, most = *high;
+  for (int round = 0; round < 64; ++round) {
+    const double middle = (least + most) / 2;
+    double sum = 0;
+    for (size_t i = 0; i < logs.size(); ++i) sum += pull(i, middle);
+    (sum > 0 ? least : most) = middle;
+  }
+  const double value = (least + most) / 2;
+  double inside = 0, squares = 0;
+  for (size_t i = 0; i < logs.size(); ++i) inside += std::abs(logs[i] - value) < kMostPull ? weights[i] : 0;
+  if (!(inside > 0)) return std::nullopt;
+  std::vector<double> deviations;
+  for (size_t i = 0; i < logs.size(); ++i) {
+    deviations.push_back(pull(i, value) / inside);
+    squares += deviations.back() * deviations.back();
+  }
+  const double count = static_cast<double>(logs.size());
   return Estimate{value, std::sqrt(squares * count / (count - 1)), degrees_behind(deviations)};
 }
 

@@ -44,6 +44,43 @@ TEST(Sum, AddsVariancesByWelchAndSatterthwaite) {
   EXPECT_DOUBLE_EQ(sum({0, 0, INFINITY}, {0, 2, 7}).degrees_of_freedom, 7);
 }
 
+/// Variances with heavy tails: log-normal parts, each seen twice with noise, and now and then one part as large as a
+/// tenth of the rest.
+TEST(TypicalLogRatio, FindsACommonFactorAmongOutliersAndSaysHowSureItIs) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  constexpr int kTrials = 400, kParts = 500;
+  constexpr double kFactor = 1.2;
+  double sum = 0, squares = 0;
+  int within = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    std::vector<double> a, b;
+    for (int i = 0; i < kParts; ++i) {
+      const double hard = std::exp(1.5 * normal(random));
+      a.push_back(kFactor * hard * std::exp(0.3 * normal(random)));
+      b.push_back(hard * std::exp(0.3 * normal(random)));
+    }
+    (trial % 2 == 0 ? a : b)[static_cast<size_t>(trial % kParts)] += 150;
+    const auto ratio = typical_log_ratio(a, b);
+    ASSERT_TRUE(ratio.has_value());
+    const ConfidenceInterval ci = interval(*ratio, 0.95);
+    within += ci.low < std::log(kFactor) && std::log(kFactor) < ci.high;
+    sum += ratio->value - std::log(kFactor);
+    squares += ratio->standard_error * ratio->standard_error;
+  }
+  EXPECT_NEAR(sum / kTrials, 0, 0.004);
+  EXPECT_LT(std::sqrt(squares / kTrials), 0.035);
+  EXPECT_GT(within, 0.92 * kTrials);
+  EXPECT_LT(within, 0.98 * kTrials);
+}
+
+TEST(TypicalLogRatio, EqualListsAreEqualAndFewPartsTellNothing) {
+  const std::vector<double> parts{1, 100, 3, 0.1, 40, 0, 2, 5, 7};
+  EXPECT_NEAR(typical_log_ratio(parts, parts)->value, 0, 1e-12);
+  EXPECT_NEAR(typical_log_ratio(parts, parts)->standard_error, 0, 1e-12);
+  EXPECT_FALSE(typical_log_ratio(std::vector<double>(7, 1.0), std::vector<double>(7, 1.0)).has_value());
+}
+
 TEST(PairedLogRatio, WhatIsCommonToBothCancels) {
   std::vector<double> hard = {1, 100, 3, 0.1, 40};
   EXPECT_EQ(paired_log_ratio(hard, hard)->standard_error, 0);
