@@ -203,7 +203,8 @@ absl::StatusOr<JobSpec> make_job(const JobOptions& o, const SceneDefaults& scene
 void add_output_options(CLI::App& app, OutputOptions& o) {
   app.add_option("--out", o.out,
                  "Folder for the images, run.json, report.html (default ./penumbra-out/<scene>)")
-      ->type_name("DIR");
+      ->type_name("DIR")
+      ->check([](const std::string& folder) { return folder.empty() ? "names no folder" : ""; });
   app.add_flag("--json", o.json, "Standard output is exactly run.json");
   app.add_flag("--quiet", o.quiet, "Nothing but errors");
 }

@@ -154,6 +154,15 @@ TEST_F(Commands, BinsOfPathLengthAreReplayedAndTheFolderHoldsOneExrPerMix) {
   EXPECT_EQ(run("converge " + kScene + " --quiet --pixel 9,9 --transient 0,1,4").code, 2);
 }
 
+TEST_F(Commands, AFolderWithoutANameIsNoneToWriteTo) {
+  for (const std::string& words : {"render " + kSmall + "--spp 1 --mix sa:1 --out ''",
+                                  std::string("fetch somejob --server 127.0.0.1:1 --out ''")}) {
+    const Said said = run(words);
+    EXPECT_EQ(said.code, 2) << words << "\n" << said.out;
+    EXPECT_THAT(said.out, HasSubstr("--out")) << words;
+  }
+}
+
 TEST_F(Commands, GateRefusesBadUsage) {
   render_reference();
   ASSERT_EQ(render("--spp 4 --out now").code, 0);
