@@ -183,6 +183,12 @@ absl::StatusOr<PlannedPasses> replanned(const JobSpec& spec, const std::vector<s
     const AutoSpending spending{factor * rounding, measured[m].speed.seconds + measured[m].to_come * factor,
                                 sure};
     ASSIGN_OR_RETURN(AutoPlan again, plan_auto(spec, tiles, pilot, next.autos.size(), spending));
+    // What tiles do stays: their blocks have passes already. (A later version might choose otherwise.)
+    again.candidates = current.candidates;
+    for (size_t t = 0; t < tiles.size(); ++t) {
+      again.tiles[t].candidate = current.tiles[t].candidate;
+      again.tiles[t].shares = current.tiles[t].shares;
+    }
     next.passes.push_back(mean_passes(spec, tiles, again));
     next.autos.push_back(std::move(again));
   }

@@ -209,6 +209,18 @@ TEST(Replanner, WithoutAWordThePilotsStands) {
   EXPECT_EQ((Speed{1, 2, 1}.factor()), 1.5) << "one pass is worth as much as the pilot's word";
 }
 
+TEST(Replanner, WhatTilesDoStaysThoughThePilotWouldSayOtherwiseNow) {
+  const JobSpec spec = spec_of({"auto"}, 20);
+  PlannedPasses planned = *planned_passes(spec, pilot_of(spec));
+  TilePlan& tile = planned.autos[0].tiles[2];
+  tile.candidate = tile.candidate == 1 ? 2 : 1;
+  tile.shares.assign(64, 200);  // as another version of the planner had it
+  const PlannedPasses next = next_of(spec, planned, 1.2);
+  ASSERT_EQ(next.autos.size(), 1u);
+  EXPECT_EQ(next.autos[0].tiles[2].candidate, tile.candidate);
+  EXPECT_EQ(next.autos[0].tiles[2].shares, tile.shares);
+}
+
 TEST(Replanner, AutoSpendsItsBudgetOnAllThatIsItsOwn) {
   const JobSpec spec = spec_of({"auto"}, 20);
   const auto pilot = pilot_of(spec);
