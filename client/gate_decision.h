@@ -35,7 +35,7 @@ struct GateFigures {
   std::optional<double> relmse;  ///< of the image
   std::optional<double> floor;   ///< of the reference
   std::optional<ConfidenceInterval> relmse_ci;
-  std::vector<double> block_relmse;  ///< empty where unknown
+  std::vector<double> block_relmse;    ///< empty where unknown
   std::optional<double> variance;      ///< ErrorFigures::variance
   std::vector<double> block_variance;  ///< empty where unknown
   double cpu_seconds = 0;
@@ -48,25 +48,25 @@ struct LogRatio {
   std::string why_not;
 };
 
-/// Error per pass, new over old, for it falls as 1/passes: variance × passes where both runs know the variance
-/// of their blocks, else relMSE × passes. Of n groups of passes variance has n - 1 squares a pixel and relMSE has
-/// one, so that it is that much surer; what it does not see is excess_ratio()'s. From relMSE the
-/// reference's floor, which does not fall, is taken off where both runs know it. The blocks, else the intervals, say how
-/// sure it is.
+/// Error per pass, new over old, for it falls as 1/passes: variance × passes where both runs know the
+/// variance of their blocks, else relMSE × passes. Of n groups of passes variance has n - 1 squares a pixel
+/// and relMSE has one, so that it is that much surer; what it does not see is excess_ratio()'s. From relMSE
+/// the reference's floor, which does not fall, is taken off where both runs know it. The blocks, else the
+/// intervals, say how sure it is.
 LogRatio error_ratio(const GateFigures& now, const GateFigures& before);
 
-/// The ratio of variance × passes that is typical of the blocks (typical_log_ratio): a change that is in all of
-/// the picture stands out here where a few outliers blur error_ratio(). Nothing where a run does not know the variance of
-/// its blocks.
+/// The ratio of variance × passes that is typical of the blocks (typical_log_ratio): a change that is in all
+/// of the picture stands out here where a few outliers blur error_ratio(). Nothing where a run does not know
+/// the variance of its blocks.
 std::optional<LogRatio> typical_ratio(const GateFigures& now, const GateFigures& before);
 
-/// (relMSE - floor) / variance, new over old. Each is 1 for an unbiased image and grows with the square of its
-/// bias, or with what the samples have missed. A difference between reference and truth is in both.
+/// (relMSE - floor) / variance, new over old. Each is 1 for an unbiased image and grows with the square of
+/// its bias, or with what the samples have missed. A difference between reference and truth is in both.
 /// Nothing where a run does not know the variance of its blocks.
 std::optional<LogRatio> excess_ratio(const GateFigures& now, const GateFigures& before);
 
-/// How much of its variance a run may add as bias²: less than that is not to be seen in pictures of 10^4 pixels,
-/// whose (relMSE - floor) / variance scatters by some percent.
+/// How much of its variance a run may add as bias²: less than that is not to be seen in pictures of 10^4
+/// pixels, whose (relMSE - floor) / variance scatters by some percent.
 inline constexpr double kExcessTolerance = 0.25;
 
 /// CPU seconds per pass in units of a calibration loop, new over old. `scale`: log of (old seconds per unit /

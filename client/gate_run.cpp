@@ -183,8 +183,7 @@ absl::StatusOr<NoiseFloor> noise_from_json(const Json& json) {
 std::vector<GateRow> error_rows(const std::string& mix, const GateFigures& now, const GateFigures& before,
                                 const GateOptions& options) {
   const LogRatio error = error_ratio(now, before);
-  std::vector<GateRow> rows = {
-      {mix, "error per pass", error.estimate, options.tolerance, {}, error.why_not}};
+  std::vector<GateRow> rows = {{mix, "error per pass", error.estimate, options.tolerance, {}, error.why_not}};
   // Where it cannot be told the first row stands alone.
   if (const auto typical = typical_ratio(now, before); typical && typical->estimate)
     rows.push_back({mix, "typical error", typical->estimate, options.tolerance, {}, ""});

@@ -33,10 +33,11 @@ struct RunRecord {
 /// The run as the interface's schema 1, and more keys: `partial`, `state`, `reference`, `plan` (passes per
 /// mix), `auto_plans` and `earlier_plans` (client/auto_plan_json.h), `spec` (enough to replay), `warnings`,
 /// `tiles`, `workers`, times of the phases; for `gate` the `calibration` (proto/job.h) of run, mixes and
-/// tiles, each mix's `relative_variance` (ErrorFigures::variance), and its `error_blocks`: relMSE and variance of
-/// every block of a grid over the crop, row by row, `edge` pixels wide. `estimated_relmse` and its interval, of the final image and along the timeline: what relMSE
-/// the run itself expects (film/own_error.h). `transient` is {"t0","t1","bins"} of a job with --transient.
-/// Figures that do not apply are null.
+/// tiles, each mix's `relative_variance` (ErrorFigures::variance), and its `error_blocks`: relMSE and
+/// variance of every block of a grid over the crop, row by row, `edge` pixels wide. `estimated_relmse` and
+/// its interval, of the final image and along the timeline: what relMSE the run itself expects
+/// (film/own_error.h). `transient` is {"t0","t1","bins"} of a job with --transient. Figures that do not apply
+/// are null.
 Json run_json(const RunRecord& run);
 
 /// The job that renders the same bits again: the spec with the run's plan. InvalidArgument for a run.json

@@ -34,19 +34,20 @@ Estimate sum(const Estimate& a, const Estimate& b);
 /// Equal lists give 0 ± 0. Nothing with fewer than two parts or a sum that is not positive and finite.
 std::optional<Estimate> paired_log_ratio(std::span<const double> a, std::span<const double> b);
 
-/// log of Π_k (Σ_i parts_k[i])^(power_k), all lists of the same parts: deviations Σ_k power_k parts_k[i] / (sum of k).
+/// log of Π_k (Σ_i parts_k[i])^(power_k), all lists of the same parts: deviations Σ_k power_k parts_k[i] /
+/// (sum of k).
 struct Factor {
   std::span<const double> parts;
   double power = 1;
 };
 std::optional<Estimate> paired_log_product(std::span<const Factor> factors);
 
-/// The log ratio that is typical of the parts: Huber's M-estimate of log(a[i] / b[i]), each part weighed by its share,
-/// √(a[i] b[i]) over the sum of these but 1/100 at most, and pulling no harder than a part that is off by
-/// exp(1/2). Two lists that are exchangeable give 0 in the mean, and a common factor is found, however heavy the tails: of
-/// figures of variance one part in a thousand may hold a tenth. What has changed in few parts only it does not tell.
-/// Standard error from its influence function (Huber 1981, §3.2). Nothing with fewer than eight parts that are positive in
-/// both.
+/// The log ratio that is typical of the parts: Huber's M-estimate of log(a[i] / b[i]), each part weighed by
+/// its share, √(a[i] b[i]) over the sum of these but 1/100 at most, and pulling no harder than a part that is
+/// off by exp(1/2). Two lists that are exchangeable give 0 in the mean, and a common factor is found, however
+/// heavy the tails: of figures of variance one part in a thousand may hold a tenth. What has changed in few
+/// parts only it does not tell. Standard error from its influence function (Huber 1981, §3.2). Nothing with
+/// fewer than eight parts that are positive in both.
 std::optional<Estimate> typical_log_ratio(std::span<const double> a, std::span<const double> b);
 
 /// Mean of the values with its standard error, n - 1 degrees of freedom. Nothing with fewer than two.

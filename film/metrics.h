@@ -32,8 +32,8 @@ struct ErrorFigures {
   /// mean of s²/(R²+ε), s the reference's standard error: what relMSE a perfect image would show.
   /// Nothing for a reference without stderr or variance layers.
   std::optional<double> reference_floor;
-  /// mean of s²/(R²+ε), s the image's standard error: relMSE of an unbiased image over all seeds, as this one's
-  /// own scatter tells. Less noisy than relmse, of which every pixel is one square; blind to bias.
+  /// mean of s²/(R²+ε), s the image's standard error: relMSE of an unbiased image over all seeds, as this
+  /// one's own scatter tells. Less noisy than relmse, of which every pixel is one square; blind to bias.
   /// Nothing for an image without a variance layer.
   std::optional<double> variance;
   /// At most 1024, so that two runs can be compared place by place (client/gate).

@@ -11,8 +11,8 @@ const std::vector<Mix>& auto_candidates() {
     std::vector<Mix> mixes;
     for (const char* text :
          {"bsdf:2+sa:2", "bsdf:1+sa:1", "bsdf:1+sa:3", "bsdf:2+sa:6", "bsdf:4", "sa:4", "bsdf:3+line-sa@v:1",
-          "bsdf:2+line-sa@v:2", "bsdf:1+line-sa@v:3", "line-sa@v:4", "bsdf:2+visible-area:2", "visible-area:2",
-          "bsdf:1+sa:1/medium=line", "sa:2/medium=line", "line-sa@v:2/medium=line"})
+          "bsdf:2+line-sa@v:2", "bsdf:1+line-sa@v:3", "line-sa@v:4", "bsdf:2+visible-area:2",
+          "visible-area:2", "bsdf:1+sa:1/medium=line", "sa:2/medium=line", "line-sa@v:2/medium=line"})
       mixes.push_back(*parse_mix(text));
     return mixes;
   }();

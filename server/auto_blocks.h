@@ -24,8 +24,8 @@ double squared_deviations(const PixelRect& tile, const std::vector<BlockCost>& b
 /// No block has less than this share of the passes of the one with the most.
 inline constexpr double kLeastBlockShare = 0.25;
 
-/// From what a pilot has measured in each block of the tile; no shares if it has not. No share is below `least`, which
-/// lies in [kLeastBlockShare, 1].
+/// From what a pilot has measured in each block of the tile; no shares if it has not. No share is below
+/// `least`, which lies in [kLeastBlockShare, 1].
 SharedOut shared_out(const PixelRect& tile, const std::vector<BlockCost>& blocks,
                      double least = kLeastBlockShare);
 

@@ -30,9 +30,9 @@ constexpr double kPilotShare = 0.08;
 constexpr double kUnboundedRatio = 3;
 // No tile gets fewer than this share of the mean passes, whatever the pilot has (not) seen there.
 constexpr double kLeastShare = 0.4;
-// No pixel gets fewer passes than this, nor than kLeastPart of the mean where that is less: a pilot of four passes has not
-// seen what happens in one of ten. The kitchen at 16 passes a pixel: blocks with three or four of them had its
-// largest errors, and the plan was no better than one without blocks.
+// No pixel gets fewer passes than this, nor than kLeastPart of the mean where that is less: a pilot of four
+// passes has not seen what happens in one of ten. The kitchen at 16 passes a pixel: blocks with three or four
+// of them had its largest errors, and the plan was no better than one without blocks.
 constexpr double kLeastPasses = 8, kLeastPart = 0.6;
 constexpr double kMostPasses = 1e12;  // far beyond any run; keeps conversions defined
 
@@ -235,8 +235,9 @@ double mean_passes(const std::vector<PixelRect>& tiles, const std::vector<Choice
   return sum / area;
 }
 
-/// Candidates and shares follow from the pilot and the budget alone, so that they stay when totals are planned anew.
-/// What a least number of passes means for shares depends on the tiles' passes, and these on the shares: a few rounds settle it.
+/// Candidates and shares follow from the pilot and the budget alone, so that they stay when totals are
+/// planned anew. What a least number of passes means for shares depends on the tiles' passes, and these on
+/// the shares: a few rounds settle it.
 std::vector<Choice> choices(const JobSpec& spec, const std::vector<PixelRect>& tiles, const Measurements& m) {
   const std::vector<Choice> whole = whole_choices(tiles, m);
   std::vector<double> least(tiles.size(), kLeastBlockShare);

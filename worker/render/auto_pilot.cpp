@@ -11,9 +11,9 @@ namespace penumbra {
 namespace {
 
 /// What whole passes of an automatic mix's pilot may take, in units of what its candidates may. Two are worth
-/// much, and dark tiles pay for bright ones; more than two are not. With 15 % of a tile's time for two nearly all of op-veach's
-/// tiles have them at 20 s; at 10 % it had 1.26 times the error. The kitchen, 13 passes in all, had 0.81 times
-/// the error at 10 % that it had at 30 %.
+/// much, and dark tiles pay for bright ones; more than two are not. With 15 % of a tile's time for two nearly
+/// all of op-veach's tiles have them at 20 s; at 10 % it had 1.26 times the error. The kitchen, 13 passes in
+/// all, had 0.81 times the error at 10 % that it had at 30 %.
 constexpr double kShareOfTwo = 3, kShareOfMore = 2;
 /// Where there is time for one such pass only it is made in every so many tiles.
 constexpr uint64_t kCalibrationTiles = 8;

@@ -156,7 +156,7 @@ TEST_F(Commands, BinsOfPathLengthAreReplayedAndTheFolderHoldsOneExrPerMix) {
 
 TEST_F(Commands, AFolderWithoutANameIsNoneToWriteTo) {
   for (const std::string& words : {"render " + kSmall + "--spp 1 --mix sa:1 --out ''",
-                                  std::string("fetch somejob --server 127.0.0.1:1 --out ''")}) {
+                                   std::string("fetch somejob --server 127.0.0.1:1 --out ''")}) {
     const Said said = run(words);
     EXPECT_EQ(said.code, 2) << words << "\n" << said.out;
     EXPECT_THAT(said.out, HasSubstr("--out")) << words;

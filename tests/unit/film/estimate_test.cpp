@@ -44,8 +44,8 @@ TEST(Sum, AddsVariancesByWelchAndSatterthwaite) {
   EXPECT_DOUBLE_EQ(sum({0, 0, INFINITY}, {0, 2, 7}).degrees_of_freedom, 7);
 }
 
-/// Variances with heavy tails: log-normal parts, each seen twice with noise, and now and then one part as large as a
-/// tenth of the rest.
+/// Variances with heavy tails: log-normal parts, each seen twice with noise, and now and then one part as
+/// large as a tenth of the rest.
 TEST(TypicalLogRatio, FindsACommonFactorAmongOutliersAndSaysHowSureItIs) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
