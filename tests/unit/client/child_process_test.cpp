@@ -24,6 +24,7 @@ class ChildProcessTest : public testing::Test {
   ChildProcessTest() : log_(std::filesystem::path(testing::TempDir()) / ("penumbra_child_" + std::to_string(getpid()) + ".log")) {
     std::filesystem::remove(log_);
   }
+  ~ChildProcessTest() override { std::filesystem::remove(log_); }
   ChildProcess shell(const std::string& script) {
     auto child = ChildProcess::start("/bin/sh", {"-c", script}, log_);
     EXPECT_TRUE(child.ok());

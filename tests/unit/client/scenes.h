@@ -20,6 +20,7 @@ inline SceneDescription parsed(const std::string& text) {
   const auto path = folder / "s.pbrt";
   std::ofstream(path) << text;
   auto scene = parse_scene_file(path);
+  std::filesystem::remove_all(folder);
   EXPECT_TRUE(scene.ok()) << message_of(scene.status());
   return scene.ok() ? *std::move(scene) : SceneDescription();
 }
