@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 
@@ -14,10 +13,10 @@ namespace penumbra {
 namespace {
 
 // What is assumed of CPU per pass in calibration units between runs, where `calibrate` has not measured it;
-// the calibration loop's own standard error and the tiles' scatter come on top. The loop lies in the first-level
-// cache and does not feel what neighbours do to memory: where load came and went, 3 of 180 pairs of equal runs were
-// called worse with half of this.
-constexpr double kAssumedCpuLogSd = 0.03;
+// the calibration loop's own standard error and the tiles' scatter come on top. As little sure as if five or
+// six runs had told it: the loop lies in the first-level cache and does not feel what neighbours do to
+// memory. Taken for certain, 3 of 180 pairs of equal runs were called worse where load came and went.
+constexpr double kAssumedCpuLogSd = 0.015, kAssumedDegrees = 5;
 
 struct GateMix {
   std::string label;
@@ -135,7 +134,7 @@ std::optional<Estimate> scale_of(const GateRun& now, const GateRun& before, cons
   } else {
     scale.standard_error = std::hypot(std::hypot(kAssumedCpuLogSd, now.unit_log_error),
                                       std::hypot(kAssumedCpuLogSd, before.unit_log_error));
-    scale.degrees_of_freedom = std::numeric_limits<double>::infinity();
+    scale.degrees_of_freedom = kAssumedDegrees;
   }
   return scale;
 }
