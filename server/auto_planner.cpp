@@ -235,13 +235,27 @@ double mean_passes(const std::vector<PixelRect>& tiles, const std::vector<Choice
   return sum / area;
 }
 
+/// Sums and quotients of these stay numbers. What a worker reports is finite, but may be anything else.
+absl::Status check_range(const std::vector<Choice>& choices) {
+  constexpr double kMost = 1e60;
+  for (const Choice& choice : choices)
+    if (!(choice.variance >= 0 && choice.variance <= kMost && choice.cost >= 1 / kMost &&
+          choice.cost <= kMost))
+      return make_status(absl::StatusCode::kInternal,
+                         "the pilot of `auto` has measured a variance of {} at a cost of {}", choice.variance,
+                         choice.cost);
+  return absl::OkStatus();
+}
+
 /// Candidates and shares follow from the pilot and the budget alone, so that they stay when totals are
 /// planned anew. What a least number of passes means for shares depends on the tiles' passes, and these on
 /// the shares: a few rounds settle it.
-std::vector<Choice> choices(const JobSpec& spec, const std::vector<PixelRect>& tiles, const Measurements& m) {
+absl::StatusOr<std::vector<Choice>> choices(const JobSpec& spec, const std::vector<PixelRect>& tiles,
+                                            const Measurements& m) {
   const std::vector<Choice> whole = whole_choices(tiles, m);
   std::vector<double> least(tiles.size(), kLeastBlockShare);
   std::vector<Choice> chosen = with_blocks(tiles, m, whole, least);
+  RETURN_IF_ERROR(check_range(chosen));
   if (std::holds_alternative<SppBudget>(spec.budget)) return chosen;
   for (int round = 0; round < 3; ++round) {
     const std::vector<int64_t> passes = passes_of(spec, chosen, m.pilot_seconds, {});
@@ -249,6 +263,7 @@ std::vector<Choice> choices(const JobSpec& spec, const std::vector<PixelRect>& t
     for (size_t t = 0; t < tiles.size(); ++t)
       least[t] = std::clamp(wanted / static_cast<double>(passes[t]), kLeastBlockShare, 1.0);
     chosen = with_blocks(tiles, m, whole, least);
+    RETURN_IF_ERROR(check_range(chosen));
   }
   return chosen;
 }
@@ -268,7 +283,7 @@ absl::StatusOr<AutoPlan> plan_auto(const JobSpec& spec, const std::vector<PixelR
                                    const std::vector<std::vector<MixCost>>& pilot, size_t number,
                                    const AutoSpending& spending) {
   ASSIGN_OR_RETURN(const Measurements m, measurements(spec, tiles, pilot, number));
-  const std::vector<Choice> chosen = choices(spec, tiles, m);
+  ASSIGN_OR_RETURN(const std::vector<Choice> chosen, choices(spec, tiles, m));
   const std::vector<int64_t> passes = passes_of(spec, chosen, m.pilot_seconds, spending);
   AutoPlan plan{automatic_mixes(spec.mixes)[number], auto_candidates(), {}};
   const bool counted = std::holds_alternative<SppBudget>(spec.budget);  // so many in every pixel
@@ -283,7 +298,8 @@ absl::StatusOr<std::vector<double>> auto_pass_costs(const JobSpec& spec, const s
                                                     size_t number) {
   ASSIGN_OR_RETURN(const Measurements m, measurements(spec, tiles, pilot, number));
   std::vector<double> costs;
-  for (const Choice& choice : choices(spec, tiles, m)) costs.push_back(choice.cost);
+  ASSIGN_OR_RETURN(const std::vector<Choice> chosen, choices(spec, tiles, m));
+  for (const Choice& choice : chosen) costs.push_back(choice.cost);
   return costs;
 }
 

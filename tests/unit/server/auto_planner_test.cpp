@@ -213,6 +213,16 @@ TEST(AutoPlanner, PassCountsPlanFromWorkAlone) {
   EXPECT_EQ(planned(spec, pilot), plan) << "a clock has had its say";
 }
 
+TEST(AutoPlanner, WhatIsBeyondAllNumbersIsRefused) {
+  for (const Found& found : {Found{1e300, 1e-6, 1}, Found{1, 1e300, 1}, Found{1, 1e-300, 1}}) {
+    Pilot pilot = uniform_pilot(2);
+    for (size_t k = 0; k < auto_candidates().size(); ++k)
+      for (int t = 0; t < 2; ++t) set(pilot, t, static_cast<int>(k), found);
+    const JobSpec spec = spec_of(2, CpuSecondsBudget{10});
+    EXPECT_EQ(plan_auto(spec, tiles_of(spec), pilot, 0).status().code(), absl::StatusCode::kInternal);
+  }
+}
+
 TEST(AutoPlanner, ATargetIsMet) {
   Pilot pilot = uniform_pilot(4);
   for (size_t k = 0; k < auto_candidates().size(); ++k) set(pilot, 2, static_cast<int>(k), {9, 1e-6, 1});
