@@ -13,14 +13,15 @@ void RoundSums::add(const ErrorFigures& error, double round_passes, double cpu_s
   passes += round_passes;
   relmse += error.relmse * round_passes;
   if (error.reference_floor) floor = floor.value_or(0) + *error.reference_floor * round_passes;
-  block_relmse.resize(error.blocks.relmse.size(), 0);
-  for (size_t b = 0; b < block_relmse.size(); ++b) block_relmse[b] += error.blocks.relmse[b] * round_passes;
+  const auto add_blocks = [&](std::vector<double>& sums, const std::vector<double>& blocks) {
+    sums.resize(blocks.size(), 0);
+    for (size_t b = 0; b < blocks.size(); ++b) sums[b] += blocks[b] * round_passes;
+  };
+  add_blocks(block_relmse, error.blocks.relmse);
   // A round without the variance leaves no variance of the sum.
   if (error.variance && (variance || seconds_per_pass.empty())) {
     variance = variance.value_or(0) + *error.variance * round_passes;
-    block_variance.resize(error.blocks.variance.size(), 0);
-    for (size_t b = 0; b < block_variance.size(); ++b)
-      block_variance[b] += error.blocks.variance[b] * round_passes;
+    add_blocks(block_variance, error.blocks.variance);
   } else {
     variance.reset();
     block_variance.clear();

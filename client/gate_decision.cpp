@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "proto/status.h"
 
@@ -33,6 +34,11 @@ std::optional<Estimate> unpaired(double now, double before, const GateFigures& a
   const double ea = *sa * *a.relmse / now, eb = *sb * *b.relmse / before;
   return Estimate{std::log(now / before), std::sqrt(ea * ea + eb * eb),
                   std::numeric_limits<double>::infinity()};
+}
+
+/// Figures × passes instead of figures: what the log ratio of the figures lacks.
+Estimate passes_ratio(const GateFigures& now, const GateFigures& before) {
+  return {std::log(now.passes / before.passes), 0, std::numeric_limits<double>::infinity()};
 }
 
 bool know_blocks(const GateFigures& a, const GateFigures& b) {
@@ -92,7 +98,7 @@ Verdict worst(const std::vector<Verdict>& verdicts) {
 
 LogRatio error_ratio(const GateFigures& now, const GateFigures& before) {
   if (!now.relmse || !before.relmse) return {{}, "no error figure without a reference"};
-  const Estimate passes{std::log(now.passes / before.passes), 0, std::numeric_limits<double>::infinity()};
+  const Estimate passes = passes_ratio(now, before);
   if (*now.relmse == 0 && *before.relmse == 0) return {passes, ""};
   std::optional<Estimate> ratio;
   if (know_variance(now, before)) {
@@ -112,8 +118,7 @@ std::optional<LogRatio> typical_ratio(const GateFigures& now, const GateFigures&
   if (!know_variance(now, before)) return std::nullopt;
   const auto ratio = typical_log_ratio(now.block_variance, before.block_variance);
   if (!ratio) return LogRatio{{}, "too few places vary"};
-  const Estimate passes{std::log(now.passes / before.passes), 0, std::numeric_limits<double>::infinity()};
-  return LogRatio{sum(*ratio, passes), ""};
+  return LogRatio{sum(*ratio, passes_ratio(now, before)), ""};
 }
 
 std::optional<LogRatio> excess_ratio(const GateFigures& now, const GateFigures& before) {
