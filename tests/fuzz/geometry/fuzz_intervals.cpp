@@ -8,7 +8,8 @@
 namespace {
 
 constexpr int kCells = 255;
-using Cells = std::bitset<kCells>;  // whole words at a time: the grid is not to take longer than what it judges
+using Cells =
+    std::bitset<kCells>;  // whole words at a time: the grid is not to take longer than what it judges
 
 Cells from(int cell) {
   return ~Cells() << static_cast<size_t>(cell);
