@@ -1,5 +1,6 @@
 #include "client/against.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "client/outcome.h"
@@ -60,6 +61,19 @@ absl::Status render_round(Side& side, const JobSpec& spec, const FilmImage& refe
   return absl::OkStatus();
 }
 
+/// A budget becomes passes once, on the old build, and both builds render as many: other numbers of passes
+/// have other patterns of samples (patterns_differ). What was rendered for that counts for nothing. `auto`
+/// plans anew each time.
+absl::Status fix_passes(Side& side, JobSpec& spec, std::stop_token stop) {
+  const bool automatic =
+      std::any_of(spec.mixes.begin(), spec.mixes.end(), [](const Mix& mix) { return mix.automatic; });
+  if (automatic || std::holds_alternative<SppBudget>(spec.budget)) return absl::OkStatus();
+  ASSIGN_OR_RETURN(const FetchedRun run, run_quietly(*side.backend->server, spec, stop,
+                                                     [&](const JobStatus&) { return side.backend->tend(); }));
+  for (const MixSummary& mix : run.summary.mixes) spec.plan.push_back(mix.passes);
+  return absl::OkStatus();
+}
+
 absl::StatusOr<Side> open_side(const AgainstOptions& against, const std::string& programs,
                                const Submission& submission, std::stop_token stop) {
   Side side;
@@ -77,8 +91,10 @@ absl::StatusOr<Side> open_side(const AgainstOptions& against, const std::string&
 }  // namespace
 
 std::vector<GateRow> rows_of(const std::string& mix, const RoundSums& now, const RoundSums& before,
-                             const GateOptions& options) {
-  std::vector<GateRow> rows = error_rows(mix, per_pass(now), per_pass(before), options);
+                             const GateOptions& options, SamplerKind sampler) {
+  const std::string why_not =
+      sampler == SamplerKind::kIndependent ? "" : patterns_differ(now.passes, before.passes);
+  std::vector<GateRow> rows = error_rows(mix, per_pass(now), per_pass(before), options, why_not);
   std::vector<double> cpu;
   for (size_t r = 0; r < now.seconds_per_pass.size(); ++r)
     cpu.push_back(std::log(now.seconds_per_pass[r] / before.seconds_per_pass[r]));
@@ -98,8 +114,10 @@ absl::StatusOr<GateResult> gate_against(const AgainstOptions& against, const Gat
   for (const std::string& warning : submission.warnings) progress.note("warning: " + warning);
   ASSIGN_OR_RETURN(Side before, open_side(against, against.other, submission, stop));
   ASSIGN_OR_RETURN(Side now, open_side(against, "", submission, stop));
+  JobSpec planned = submission.spec;
+  RETURN_IF_ERROR(fix_passes(before, planned, stop));
   for (int round = 0; round < against.rounds; ++round) {
-    JobSpec spec = submission.spec;
+    JobSpec spec = planned;
     spec.seed += static_cast<uint64_t>(round);
     progress.note(fmt::format("round {} of {}", round + 1, against.rounds));
     Side& first = round % 2 == 0 ? before : now;
@@ -110,7 +128,7 @@ absl::StatusOr<GateResult> gate_against(const AgainstOptions& against, const Gat
   GateResult result;
   const std::vector<std::string> names = labels(submission.spec.mixes);
   for (size_t m = 0; m < names.size(); ++m)
-    for (GateRow& row : rows_of(names[m], now.mixes[m], before.mixes[m], options))
+    for (GateRow& row : rows_of(names[m], now.mixes[m], before.mixes[m], options, submission.spec.sampler))
       result.rows.push_back(std::move(row));
   judge_rows(result);
   return result;

@@ -17,8 +17,9 @@ struct AgainstOptions {
 };
 
 /// Renders `rounds` times with each build, in the order A B B A A B …, so that drift meets both alike; both
-/// get the seeds seed, seed + 1, … Error per pass: block by block over the sum of the rounds. CPU per pass:
-/// mean of the rounds' log ratios; no calibration is needed. InvalidArgument names the flag at fault.
+/// get the seeds seed, seed + 1, … A budget is turned into passes once, for all rounds of both. Error per
+/// pass: block by block over the sum of the rounds. CPU per pass: mean of the rounds' log ratios; no
+/// calibration is needed. InvalidArgument names the flag at fault.
 absl::StatusOr<GateResult> gate_against(const AgainstOptions& against, const GateOptions& options,
                                         std::stop_token stop);
 
@@ -34,6 +35,6 @@ struct RoundSums {
 };
 /// The rows of one mix.
 std::vector<GateRow> rows_of(const std::string& mix, const RoundSums& now, const RoundSums& before,
-                             const GateOptions& options);
+                             const GateOptions& options, SamplerKind sampler);
 
 }  // namespace penumbra

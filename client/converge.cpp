@@ -6,6 +6,7 @@
 #include "client/commands.h"
 #include "client/convergence.h"
 #include "client/integrand.h"
+#include "client/output_folder.h"
 #include "client/parse_text.h"
 #include "client/quiet_run.h"
 #include "client/run_job.h"
@@ -30,14 +31,6 @@ struct ConvergeOptions {
   std::string pixel, estimates = "1000", most = "1024", light = "0", grid = "256";
   bool integrand = false;
 };
-
-absl::Status ensure_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (!error) return absl::OkStatus();
-  return make_status(absl::StatusCode::kFailedPrecondition, "{}: cannot create: {}", folder.string(),
-                     error.message());
-}
 
 /// What has no meaning here is refused rather than ignored.
 absl::Status check_options(const JobOptions& o) {
@@ -70,6 +63,7 @@ absl::StatusOr<Prepared> prepare_converge(const ConvergeOptions& o) {
     }
   }
   prepared.folder = o.output.out.empty() ? default_folder(o.job.scene) + "-converge" : o.output.out;
+  RETURN_IF_ERROR(prepare_folder(prepared.folder));
   return prepared;
 }
 
@@ -134,7 +128,6 @@ absl::Status converge(const ConvergeOptions& o, std::stop_token stop) {
       text += fmt::format("note: {}: {}\n", curves[m].mix, change);
     }
   json["mixes"] = convergence_json(curves);
-  RETURN_IF_ERROR(ensure_folder(prepared.folder));
   RETURN_IF_ERROR(write_file_atomically(prepared.folder / "converge.json", json_text(json)));
   RETURN_IF_ERROR(
       write_file_atomically(prepared.folder / "converge.svg", convergence_svg(curves, where(prepared))));
@@ -158,7 +151,6 @@ absl::Status draw_integrands(const ConvergeOptions& o, std::stop_token stop) {
         "light or "
         "surface there",
         light, prepared.pixel.x, prepared.pixel.y);
-  RETURN_IF_ERROR(ensure_folder(prepared.folder));
   Json json = header_json(prepared);
   json["light"] = light;
   ASSIGN_OR_RETURN(json["integrands"], write_integrands(job, run.images, prepared.folder));

@@ -48,11 +48,11 @@ struct LogRatio {
   std::string why_not;
 };
 
-/// Error per pass, new over old, for it falls as 1/passes: variance × passes where both runs know the
-/// variance of their blocks, else relMSE × passes. Of n groups of passes variance has n - 1 squares a pixel
-/// and relMSE has one, so that it is that much surer; what it does not see is excess_ratio()'s. From relMSE
-/// the reference's floor, which does not fall, is taken off where both runs know it. The blocks, else the
-/// intervals, say how sure it is.
+/// Error per pass, new over old, for it falls as 1/passes in runs whose samples have the same patterns:
+/// variance × passes where both runs know the variance of their blocks, else relMSE × passes. Of n groups of
+/// passes variance has n - 1 squares a pixel and relMSE has one, so that it is that much surer; what it does
+/// not see is excess_ratio()'s. From relMSE the reference's floor, which does not fall, is taken off where
+/// both runs know it. The blocks, else the intervals, say how sure it is.
 LogRatio error_ratio(const GateFigures& now, const GateFigures& before);
 
 /// The ratio of variance × passes that is typical of the blocks (typical_log_ratio): a change that is in all

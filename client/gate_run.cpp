@@ -6,6 +6,7 @@
 #include <set>
 
 #include "client/json_integers.h"
+#include "client/parse_text.h"
 #include "client/run_json.h"
 #include "proto/status.h"
 
@@ -28,6 +29,8 @@ struct GateRun {
   std::vector<int64_t> resolution, crop;  ///< crop empty where unknown
   std::string bundle;                     ///< empty where unknown
   int64_t max_depth = 0;                  ///< 0: unknown
+  std::optional<std::string> sampler;     ///< nothing where unknown
+  std::optional<int64_t> camera_grid;     ///< nothing where unknown
   std::optional<double> unit_seconds;
   double unit_log_error = 0;  ///< standard error of log unit_seconds, from its scatter between tiles
   std::set<std::string> isas;
@@ -87,6 +90,8 @@ GateRun read_run(const Json& json) {
     run.crop = integers_of<int64_t>(spec.at("crop"));
     run.bundle = spec.at("bundle").get<std::string>();
     run.max_depth = integer_of<int64_t>(spec.at("max_depth"));
+    if (spec.contains("sampler")) run.sampler = spec["sampler"].get<std::string>();
+    if (spec.contains("camera_grid")) run.camera_grid = integer_of<int64_t>(spec["camera_grid"]);
   }
   return run;
 }
@@ -106,6 +111,10 @@ absl::StatusOr<GateRun> gate_run(const Json& json, const std::string& name) {
     if (!mix.figures.relmse)
       return invalid_input("{}: mix {} has no error figure; render it with --reference", name, mix.label);
     if (!(mix.figures.passes > 0)) return invalid_input("{}: mix {} has no passes", name, mix.label);
+    const GateFigures& f = mix.figures;
+    if (!f.block_variance.empty() && f.block_variance.size() != f.block_relmse.size())
+      return invalid_input("{}: mix {}: error_blocks has {} of relmse and {} of variance", name, mix.label,
+                           f.block_relmse.size(), f.block_variance.size());
   }
   return run;
 }
@@ -119,8 +128,18 @@ absl::Status check_comparable(const GateRun& now, const GateRun& before) {
   if (now.bundle.empty() || before.bundle.empty()) return absl::OkStatus();
   if (now.crop != before.crop) return differ("the rendered part (--crop)");
   if (now.max_depth != before.max_depth) return differ("--max-depth");
+  if (now.sampler && before.sampler && now.sampler != before.sampler) return differ("--sampler");
+  if (now.camera_grid && before.camera_grid && now.camera_grid != before.camera_grid)
+    return differ("--camera-grid");
   if (now.bundle != before.bundle) return differ("the scene's files");
   return absl::OkStatus();
+}
+
+/// Why error per pass tells nothing of these two, or "".
+std::string other_patterns(const GateMix& now, const GateMix& before, const GateRun& run,
+                           const GateRun& base) {
+  const bool independent = run.sampler == name_of(SamplerKind::kIndependent) && base.sampler == run.sampler;
+  return independent ? "" : patterns_differ(now.figures.passes, before.figures.passes);
 }
 
 /// log(old / new seconds per unit) and what is known of the noise of CPU per pass between two runs.
@@ -181,8 +200,18 @@ absl::StatusOr<NoiseFloor> noise_from_json(const Json& json) {
   }
 }
 
+std::string patterns_differ(double now, double before) {
+  if (now == before) return "";
+  return fmt::format(
+      "{:.0f} passes, and {:.0f} before: with samples that are stratified over passes error falls faster "
+      "than "
+      "1/passes, so equal numbers (--spp) or --sampler independent are needed",
+      now, before);
+}
+
 std::vector<GateRow> error_rows(const std::string& mix, const GateFigures& now, const GateFigures& before,
-                                const GateOptions& options) {
+                                const GateOptions& options, const std::string& why_not) {
+  if (!why_not.empty()) return {{mix, "error per pass", {}, options.tolerance, {}, why_not}};
   const LogRatio error = error_ratio(now, before);
   std::vector<GateRow> rows = {{mix, "error per pass", error.estimate, options.tolerance, {}, error.why_not}};
   // Where it cannot be told the first row stands alone.
@@ -228,7 +257,8 @@ absl::StatusOr<GateResult> gate_runs(const Json& now_json, const std::string& no
     if (same == now.mixes.end())
       return invalid_input("{}: mix {} of the baseline is missing", now_name, old.label);
     gated.insert(old.label);
-    for (GateRow& row : error_rows(old.label, same->figures, old.figures, options))
+    const std::string why_not = other_patterns(*same, old, now, before);
+    for (GateRow& row : error_rows(old.label, same->figures, old.figures, options, why_not))
       result.rows.push_back(std::move(row));
     result.rows.push_back(cpu_row(*same, old, now, before, options));
   }
@@ -263,7 +293,7 @@ absl::StatusOr<Json> baseline_of(const Json& run, const std::string& name) {
     if (run.contains("workers"))
       for (const Json& worker : run["workers"]) out["workers"].push_back({{"isa", worker.value("isa", "")}});
     if (run.contains("spec"))
-      for (const char* key : {"bundle", "sampler", "crop", "max_depth", "tile"})
+      for (const char* key : {"bundle", "sampler", "camera_grid", "crop", "max_depth", "tile"})
         out["spec"][key] = run["spec"].at(key);
   } catch (const Json::exception& fault) {
     return invalid_input("{}: {}", name, fault.what());

@@ -63,8 +63,10 @@ NoiseFigures noise_of(const std::vector<NullRun>& runs) {
 }
 
 double found_increase(const Spread& cpu_between, double tolerance) {
-  // A gate of one mix judges two figures. Its lower bound must clear the tolerance 19 times of 20.
-  const double sd = cpu_between.log_sd * std::sqrt(2.0), alarm = sidak(kFalseAlarms, 2);
+  // A gate of one mix judges four figures (error_rows, and this one). Its lower bound must clear the
+  // tolerance 19 times of 20.
+  constexpr int kFigures = 4;
+  const double sd = cpu_between.log_sd * std::sqrt(2.0), alarm = sidak(kFalseAlarms, kFigures);
   const double t = t_quantile(1 - alarm, cpu_between.degrees_of_freedom) - normal_quantile(kMissed);
   return std::exp(std::log1p(tolerance) + t * sd) - 1;
 }

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "client/checkpoint_errors.h"
+#include "client/output_folder.h"
 #include "client/report.h"
 #include "film/atomic_file.h"
 #include "film/exr.h"
@@ -14,27 +15,6 @@ namespace penumbra {
 namespace {
 
 namespace fs = std::filesystem;
-
-absl::Status make_folder(const std::string& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error)
-    return make_status(absl::StatusCode::kFailedPrecondition, "{}: cannot create: {}", folder,
-                       error.message());
-  return absl::OkStatus();
-}
-
-/// Images that an earlier run left in the folder, by its own run.json; nothing else is touched.
-void remove_old_images(const fs::path& folder) {
-  const absl::StatusOr<Json> old = read_json(folder / "run.json");
-  if (!old.ok() || !old->is_object() || !old->contains("mixes") || !(*old)["mixes"].is_array()) return;
-  for (const Json& mix : (*old)["mixes"]) {
-    if (!mix.is_object() || !mix.contains("image") || !mix["image"].is_string()) continue;
-    const fs::path name = mix["image"].get<std::string>();
-    std::error_code ignored;  // gone already
-    if (name == name.filename() && name.extension() == ".exr") fs::remove(folder / name, ignored);
-  }
-}
 
 absl::Status measure(const FilmImage& image, const FilmImage& reference, const JobSpec& spec,
                      MixRecord& record) {
@@ -54,7 +34,7 @@ absl::Status write_images(const fs::path& folder, const FetchedRun& fetched,
   for (size_t m = 0; m < names.size(); ++m) {
     MixRecord& record = run.mixes[m];
     record.label = names[m];
-    record.image = file_stem(names[m]) + ".exr";
+    record.image = image_name(names[m]);
     const FilmImage& image = fetched.images[m];
     const auto missing = [](const FilmImage& i) { return i.rgb.empty(); };
     if (missing(image) || std::any_of(fetched.bins[m].begin(), fetched.bins[m].end(), missing))
@@ -88,6 +68,8 @@ absl::StatusOr<Json> write_outcome(Server& server, const JobId& job, const std::
   run.partial = partial;
   // The reference is named by the job itself.
   ASSIGN_OR_RETURN(const RunSummary before, server.summary(job, stop));
+  RETURN_IF_ERROR(prepare_folder(folder));
+  RETURN_IF_ERROR(check_reference_stays(before.spec, folder));
   std::optional<FilmImage> reference;
   absl::Status fault;  // told at the end: everything that can be written is written
   if (!before.spec.reference.empty()) {
@@ -105,8 +87,7 @@ absl::StatusOr<Json> write_outcome(Server& server, const JobId& job, const std::
   run.scheduler_cpu_seconds = fetched.scheduler_cpu_seconds;
   run.mixes.resize(fetched.summary.mixes.size());
   for (size_t m = 0; m < run.mixes.size(); ++m) run.mixes[m].checkpoints = checkpoints.of(m);
-  RETURN_IF_ERROR(make_folder(folder));
-  remove_old_images(folder);
+  remove_old_images(folder, before.spec.reference);
   fault.Update(write_images(folder, fetched, reference, run));
   Json json = run_json(run);
   RETURN_IF_ERROR(write_file_atomically(fs::path(folder) / "run.json", json_text(json)));

@@ -12,7 +12,8 @@ namespace penumbra {
 
 /// Fetches what there is of a job and writes it into `folder` (made if need be), image by image, so that
 /// a late fault loses nothing. With the job's reference come error figures and the timeline. EXRs of an
-/// earlier run in that folder are removed, and only those. Answers with run.json's content.
+/// earlier run in that folder are removed, and only those (client/output_folder.h). Answers with run.json's
+/// content.
 absl::StatusOr<Json> write_outcome(Server& server, const JobId& job, const std::string& folder, bool partial,
                                    std::stop_token stop);
 

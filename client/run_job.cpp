@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "client/outcome.h"
+#include "client/output_folder.h"
 #include "client/preview.h"
 #include "client/progress.h"
 #include "client/quiet_run.h"
@@ -55,6 +56,8 @@ absl::StatusOr<std::unique_ptr<Backend>> open_local(const ClusterOptions& cluste
 
 absl::StatusOr<FinishedRun> run_job(Backend& backend, const Submission& submission, const std::string& folder,
                                     bool quiet, std::stop_token stop, const std::string& display) {
+  RETURN_IF_ERROR(prepare_folder(folder));
+  RETURN_IF_ERROR(check_reference_stays(submission.spec, folder));
   Server& server = *backend.server;
   std::optional<Tev> tev;
   if (!display.empty()) {

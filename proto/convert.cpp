@@ -45,22 +45,27 @@ static v1::Budget to_proto(const Budget& budget) {
   return out;
 }
 
-static absl::Status check_positive(std::string_view field, double value) {
-  if (!(value > 0) || !std::isfinite(value))
-    return invalid_input("{}: {} is not a finite number above 0", field, value);
+/// A microsecond to some 30,000 years: what is planned for so many seconds, and ratios to them, stay finite.
+static constexpr double kLeastSeconds = 1e-6, kMostSeconds = 1e12;
+/// Its square and its inverse are numbers, too.
+static constexpr double kLeastError = 1e-30, kMostError = 1e30;
+
+static absl::Status check_within(std::string_view field, double value, double least, double most) {
+  if (!(value >= least && value <= most))
+    return invalid_input("{}: {} is not a number from {} to {}", field, value, least, most);
   return absl::OkStatus();
 }
 
 static absl::StatusOr<Budget> from_proto(const v1::Budget& budget) {
   switch (budget.kind_case()) {
     case v1::Budget::kCpuSeconds:
-      RETURN_IF_ERROR(check_positive("budget.cpu_seconds", budget.cpu_seconds()));
+      RETURN_IF_ERROR(check_within("budget.cpu_seconds", budget.cpu_seconds(), kLeastSeconds, kMostSeconds));
       return CpuSecondsBudget{budget.cpu_seconds()};
     case v1::Budget::kSpp:
       RETURN_IF_ERROR(check_range<int64_t>("budget.spp", budget.spp(), 1, kMostPasses));
       return SppBudget{budget.spp()};
     case v1::Budget::kTargetError:
-      RETURN_IF_ERROR(check_positive("budget.target_error", budget.target_error()));
+      RETURN_IF_ERROR(check_within("budget.target_error", budget.target_error(), kLeastError, kMostError));
       return TargetErrorBudget{budget.target_error()};
     default:
       return invalid_input("budget: none is set");

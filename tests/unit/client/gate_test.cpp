@@ -59,7 +59,9 @@ TEST(GateRuns, ARunPassesAgainstItself) {
 }
 
 TEST(GateRuns, ErrorIsPerPassAndCpuPerPassInUnits) {
-  RunRecord now = gated_run();
+  RunRecord before = gated_run();
+  before.summary.spec.sampler = SamplerKind::kIndependent;
+  RunRecord now = before;
   MixSummary& mix = now.summary.mixes[0];
   mix.passes = 128;  // twice the passes at half the error, twice the time: nothing has changed
   mix.cpu_seconds = 38;
@@ -67,10 +69,23 @@ TEST(GateRuns, ErrorIsPerPassAndCpuPerPassInUnits) {
   for (double& v : now.mixes[0].error->blocks.relmse) v /= 2;
   for (MixSummary& m : now.summary.mixes) m.calibration = {100, 0.02};  // on a machine of half the speed
   now.summary.mixes[1].cpu_seconds = 19;
-  const auto result = gate(run_json(now), run_json(gated_run()));
+  const auto result = gate(run_json(now), run_json(before));
   ASSERT_TRUE(result.ok()) << result.status();
   for (const GateRow& row : result->rows)
     EXPECT_NEAR(row.log_ratio->value, 0, 1e-12) << row.mix << row.figure;
+}
+
+TEST(GateRuns, OtherNumbersOfStratifiedPassesDecideNothingOfTheError) {
+  RunRecord now = gated_run();
+  ASSERT_NE(now.summary.spec.sampler, SamplerKind::kIndependent);
+  now.summary.mixes[0].passes = 63;
+  now.mixes[0].error->relmse *= 2;
+  const auto result = gate(run_json(now), run_json(gated_run()));
+  ASSERT_TRUE(result.ok()) << result.status();
+  EXPECT_EQ(result->verdict, Verdict::kInconclusive);
+  EXPECT_EQ(result->rows[0].verdict, Verdict::kInconclusive);
+  EXPECT_THAT(result->rows[0].note, HasSubstr("63 passes, and 64 before"));
+  EXPECT_TRUE(result->rows[1].verdict.has_value()) << "CPU per pass is judged all the same";
 }
 
 TEST(GateRuns, ALargerErrorIsWorse) {
@@ -216,6 +231,8 @@ TEST(GateRuns, RefusesWhatCannotBeCompared) {
   EXPECT_THAT(fault([](Json& b) { b["spec"]["bundle"] = std::string(64, 'b'); }),
               HasSubstr("the scene's files"));
   EXPECT_THAT(fault([](Json& b) { b["spec"]["crop"] = {0, 0, 8, 8}; }), HasSubstr("--crop"));
+  EXPECT_THAT(fault([](Json& b) { b["spec"]["sampler"] = "independent"; }), HasSubstr("--sampler"));
+  EXPECT_THAT(fault([](Json& b) { b["spec"]["camera_grid"] = 4; }), HasSubstr("--camera-grid"));
   EXPECT_THAT(fault([](Json& b) { b["mixes"][0]["mix"] = "sa:9/balance"; }),
               HasSubstr("mix sa:9/balance of the baseline is missing"));
   EXPECT_THAT(fault([](Json& b) { b["mixes"][0]["relmse"] = nullptr; }),
@@ -224,6 +241,8 @@ TEST(GateRuns, RefusesWhatCannotBeCompared) {
   EXPECT_THAT(fault([](Json& b) { b["mixes"][0].erase("passes"); }), HasSubstr("base.json: "));
   EXPECT_THAT(fault([](Json& b) { b = Json::array(); }), HasSubstr("not a run.json"));
   EXPECT_THAT(fault([](Json& b) { b["partial"] = true; }), HasSubstr("interrupted"));
+  EXPECT_THAT(fault([](Json& b) { b["mixes"][0]["error_blocks"]["variance"] = {1.0}; }),
+              HasSubstr("error_blocks has 8 of relmse and 1 of variance"));
 }
 
 TEST(GateRuns, AMixThatIsNewIsToldAndNotJudged) {
@@ -254,10 +273,11 @@ TEST(RowsOf, BuildsAreComparedRoundByRound) {
     before.add(error, 16, 1 + 0.3 * r);
     now.add(error, 32, (1 + 0.3 * r) * 2 * 1.25 * (r % 2 == 0 ? 1.01 : 0.99));  // passes of 1.25 the cost
   }
-  const std::vector<GateRow> rows = rows_of("m", now, before, {});
+  const std::vector<GateRow> rows = rows_of("m", now, before, {}, SamplerKind::kIndependent);
   EXPECT_NEAR(rows[0].log_ratio->value, std::log(2), 1e-9) << "as much error with twice the passes";
   EXPECT_NEAR(rows[1].log_ratio->value, std::log(1.25), 0.01);
   EXPECT_LT(rows[1].log_ratio->standard_error, 0.01) << "the rounds' drift cancels";
+  EXPECT_FALSE(rows_of("m", now, before, {}, SamplerKind::kSobol)[0].log_ratio.has_value());
 }
 
 TEST(RowsOf, VarianceIsOfAllRoundsOrOfNone) {
@@ -273,8 +293,8 @@ TEST(RowsOf, VarianceIsOfAllRoundsOrOfNone) {
   EXPECT_EQ(all.variance, 3 * 16 * 0.5);
   EXPECT_THAT(all.block_variance, testing::ElementsAre(3 * 16 * 0.4, 3 * 16 * 0.6));
   EXPECT_FALSE(some.variance.has_value());
-  EXPECT_EQ(rows_of("m", all, all, {}).size(), 3u) << "two blocks have nothing typical";
-  EXPECT_EQ(rows_of("m", all, some, {}).size(), 2u);
+  EXPECT_EQ(rows_of("m", all, all, {}, SamplerKind::kSobol).size(), 3u) << "two blocks have nothing typical";
+  EXPECT_EQ(rows_of("m", all, some, {}, SamplerKind::kSobol).size(), 2u);
 }
 
 TEST(NoiseFloor, IsReadFromWhatCalibratePrints) {

@@ -249,8 +249,11 @@ TEST(Convert, ValuesOutOfRangeAreRefusedByName) {
       {"sampler", [](v1::JobSpec& s) { s.clear_sampler(); }},
       {"budget", [](v1::JobSpec& s) { s.clear_budget(); }},
       {"cpu_seconds", [](v1::JobSpec& s) { s.mutable_budget()->set_cpu_seconds(std::nan("")); }},
+      {"cpu_seconds", [](v1::JobSpec& s) { s.mutable_budget()->set_cpu_seconds(1e308); }},
+      {"cpu_seconds", [](v1::JobSpec& s) { s.mutable_budget()->set_cpu_seconds(1e-300); }},
       {"spp", [](v1::JobSpec& s) { s.mutable_budget()->set_spp(0); }},
       {"target_error", [](v1::JobSpec& s) { s.mutable_budget()->set_target_error(-1); }},
+      {"target_error", [](v1::JobSpec& s) { s.mutable_budget()->set_target_error(1e200); }},
       {"bundle", [](v1::JobSpec& s) { s.set_bundle("../../etc/passwd"); }},
       {"scene", [](v1::JobSpec& s) { s.set_scene(std::string(1 << 20, 'x')); }},
   };
