@@ -40,8 +40,7 @@ class Retry {
   /// After a failed call: OK means try again (it has paused); an error is the call's outcome.
   absl::Status after(const absl::Status& failure) {
     if (stop_.stop_requested()) return absl::CancelledError("interrupted");
-    if (failure.code() != absl::StatusCode::kUnavailable &&
-        failure.code() != absl::StatusCode::kDeadlineExceeded)
+    if (!absl::IsUnavailable(failure) && !absl::IsDeadlineExceeded(failure) && !is_overload(failure))
       return failure;
     if (check_) RETURN_IF_ERROR(check_());
     const auto now = Clock::now();

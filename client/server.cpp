@@ -165,10 +165,11 @@ absl::StatusOr<RunSummary> Server::summary(const JobId& job, std::stop_token sto
   request.set_summary_only(true);
   v1::RunSummary summary;
   const auto receive = [&](grpc::ClientContext& context, Retry& retry) {
+    summary.Clear();
     const auto stream = parts_->render->FetchFrames(&context, request);
     for (v1::FetchFramesResponse message; stream->Read(&message);) {
       retry.answered();
-      if (message.has_summary()) summary.Swap(message.mutable_summary());
+      if (message.has_summary()) summary.MergeFrom(message.summary());
     }
     return stream->Finish();
   };
@@ -182,16 +183,22 @@ absl::StatusOr<FetchedRun> Server::fetch(const JobId& job, std::stop_token stop,
   v1::FetchFramesRequest request;
   request.set_job(job);
   request.set_checkpoints(static_cast<bool>(each));
+  v1::RunSummary summary;
   const auto take = [&](const v1::FetchFramesResponse& message,
                         std::optional<FrameAssembler>& assembler) -> absl::Status {
     if (message.has_summary()) {
-      ASSIGN_OR_RETURN(run.summary, from_proto(message.summary()));
+      summary.MergeFrom(message.summary());
+      return absl::OkStatus();
+    }
+    if (!assembler) {  // the summary is whole
+      ASSIGN_OR_RETURN(run.summary, from_proto(summary));
       const JobSpec& spec = run.summary.spec;
       run.images.assign(spec.mixes.size(), {});
       run.bins.assign(spec.mixes.size(),
                       std::vector<FilmImage>(spec.transient ? size_t(spec.transient->bins) : 0));
       assembler.emplace(run.summary.spec);
-    } else if (message.has_frame() && assembler) {
+    }
+    if (message.has_frame()) {
       ASSIGN_OR_RETURN(std::optional<ArrivedFrame> frame, assembler->add(message.frame()));
       if (!frame) return absl::OkStatus();
       const auto mix = static_cast<size_t>(frame->mix);
@@ -209,6 +216,7 @@ absl::StatusOr<FetchedRun> Server::fetch(const JobId& job, std::stop_token stop,
   const auto receive = [&](grpc::ClientContext& context, Retry& retry) {
     std::optional<FrameAssembler> assembler;
     bool whole = false;
+    summary.Clear();
     const auto stream = parts_->render->FetchFrames(&context, request);
     for (v1::FetchFramesResponse message; ended.ok() && stream->Read(&message);) {
       retry.answered();

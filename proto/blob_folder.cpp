@@ -74,15 +74,6 @@ absl::Status corrupt(const std::string& path) {
   return make_status(absl::StatusCode::kDataLoss, "{}: its bytes no longer have the digest; removed", path);
 }
 
-void remove_stale(const std::string& folder) {
-  std::error_code error;
-  const auto limit = fs::file_time_type::clock::now() - std::chrono::hours(24);
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    const auto written = fs::last_write_time(entry.path(), error);
-    if (!error && written < limit) fs::remove(entry.path(), error);
-  }
-}
-
 }  // namespace
 
 bool is_digest(std::string_view text) {
@@ -134,7 +125,7 @@ absl::StatusOr<BlobFolder> BlobFolder::open(const std::string& root, Durability 
   fs::create_directories(root + "/partial", error);
   if (error) return invalid_input("{}: {}", root, error.message());
   if (::access((root + "/partial").c_str(), W_OK) != 0) return invalid_input("{}: not writable", root);
-  remove_stale(root + "/partial");
+  BlobFolder(root, nullptr).drop_stale_partials();
   // All folders at once, so that storing a blob makes no new one whose parent would have to be flushed.
   for (int prefix = 0; prefix < 256; ++prefix)
     fs::create_directory(fmt::format("{}/{:02x}", root, prefix), error);
@@ -144,6 +135,15 @@ absl::StatusOr<BlobFolder> BlobFolder::open(const std::string& root, Durability 
   if (!names.ok()) return system_error("opening", root);
   RETURN_IF_ERROR(flush->flush(names.get(), root));
   return BlobFolder(root, std::move(flush));
+}
+
+void BlobFolder::drop_stale_partials() const {
+  std::error_code error;
+  const auto limit = fs::file_time_type::clock::now() - std::chrono::hours(24);
+  for (const fs::directory_entry& entry : fs::directory_iterator(root_ + "/partial", error)) {
+    const auto written = fs::last_write_time(entry.path(), error);
+    if (!error && written < limit) fs::remove(entry.path(), error);
+  }
 }
 
 std::string BlobFolder::path_of(const Digest& digest) const {

@@ -93,6 +93,8 @@ class BlobFolder {
 
   /// Says that somebody still counts on the blob; false if it is not there.
   bool touch(const Digest& digest) const;
+  /// Removes what has been kept of uploads that nobody has gone on with for a day.
+  void drop_stale_partials() const;
   /// Visits every blob, in no order.
   absl::Status each(const std::function<void(const BlobFile&)>& visit) const;
   /// Removes a blob; harmless if it is not there.

@@ -203,8 +203,8 @@ v1::JobSpec to_proto(const JobSpec& spec) {
 
 absl::StatusOr<JobSpec> from_proto(const v1::JobSpec& message) {
   JobSpec spec;
-  RETURN_IF_ERROR(check_text("scene", message.scene()));
-  RETURN_IF_ERROR(check_text("reference", message.reference()));
+  RETURN_IF_ERROR(check_text("scene", message.scene(), kMostPath));
+  RETURN_IF_ERROR(check_text("reference", message.reference(), kMostPath));
   spec.scene = message.scene();
   spec.bundle = message.bundle();
   ASSIGN_OR_RETURN(spec.mixes, mixes_from_proto(message));

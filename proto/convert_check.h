@@ -12,11 +12,15 @@ namespace penumbra {
 
 /// Longest text taken from the wire: paths, warnings, log excerpts.
 inline constexpr size_t kMostText = 1 << 16;
+/// Of a path: a list of jobs has one of each.
+inline constexpr size_t kMostPath = 4096;
+/// Of a worker's host or id: its messages begin with them.
+inline constexpr size_t kMostIdentity = 1024;
 /// Most elements of any list in one message. A 65536² image in 64-pixel tiles has 2^20 tiles.
 inline constexpr int kMostElements = 1 << 22;
 
-inline absl::Status check_text(std::string_view field, std::string_view text) {
-  if (text.size() > kMostText) return invalid_input("{}: longer than {} bytes", field, kMostText);
+inline absl::Status check_text(std::string_view field, std::string_view text, size_t most = kMostText) {
+  if (text.size() > most) return invalid_input("{}: longer than {} bytes", field, most);
   return absl::OkStatus();
 }
 

@@ -249,7 +249,7 @@ v1::WorkerInfo to_proto(const WorkerInfo& worker) {
 
 absl::StatusOr<WorkerInfo> from_proto(const v1::WorkerInfo& message) {
   for (const std::string* text : {&message.id(), &message.host(), &message.isa()})
-    RETURN_IF_ERROR(check_text("worker", *text));
+    RETURN_IF_ERROR(check_text("worker", *text, kMostIdentity));
   if (message.id().empty()) return invalid_input("worker.id: empty");
   RETURN_IF_ERROR(check_range("worker.cores", message.cores(), 1, 1 << 16));
   return WorkerInfo{message.id(), message.host(), message.isa(), message.cores()};

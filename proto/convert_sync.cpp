@@ -151,7 +151,7 @@ absl::StatusOr<WorkerState> from_proto(const v1::SyncRequest& message) {
                        message.protocol(), PENUMBRA_VERSION, kSyncProtocol);
   WorkerState state;
   RETURN_IF_ERROR(check_text("version", message.version()));
-  RETURN_IF_ERROR(check_text("name", message.name()));
+  RETURN_IF_ERROR(check_text("name", message.name(), kMostPath));
   if (message.name().empty()) return invalid_input("name: empty");
   state.version = message.version();
   state.name = message.name();

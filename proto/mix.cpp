@@ -16,6 +16,8 @@ namespace {
 
 // A mix with more samples than this at one shading point is a typing error, not a wish.
 constexpr int kMostSamples = 65536;
+// So that the normal form of a mix, which may be longer than what was written, stays short.
+constexpr size_t kMostStrategies = 64;
 
 absl::Status fault(std::string_view word, std::string_view why) {
   return invalid_input("--mix: '{}': {}", word, why);
@@ -112,11 +114,10 @@ absl::Status parse_combination(std::string_view word, Mix& mix) {
       return fault(word, "the width of smooth= and smooth-ease= must be a positive number or auto");
     mix.smooth_width = *width;
   } else {
-    return fault(
-        word,
-        "unknown combination; there are balance, free, power, average, smooth=WIDTH|auto, "
-        "smooth-ease=WIDTH|auto, and after it lens=point|line, medium=point|line, motion=point|line "
-        "and pixel=point|line");
+    return fault(word,
+                 "unknown combination; there are balance, free, power, average, smooth=WIDTH|auto, "
+                 "smooth-ease=WIDTH|auto, and after it lens=point|line, medium=point|line, motion=point|line "
+                 "and pixel=point|line");
   }
   return absl::OkStatus();
 }
@@ -250,6 +251,8 @@ absl::StatusOr<Mix> parse_mix(std::string_view text) {
     ASSIGN_OR_RETURN(const StrategyCount strategy, parse_strategy(sum.substr(0, plus)));
     mix.strategies.push_back(strategy);
     if (plus == std::string_view::npos) break;
+    if (mix.strategies.size() == kMostStrategies)
+      return fault(text, fmt::format("more than {} strategies", kMostStrategies));
     sum.remove_prefix(plus + 1);
   }
   if (mix.samples() > kMostSamples) return fault(text, fmt::format("more than {} samples", kMostSamples));

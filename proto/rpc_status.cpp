@@ -12,4 +12,9 @@ absl::Status from_grpc(const grpc::Status& status) {
   return absl::Status(static_cast<absl::StatusCode>(status.error_code()), status.error_message());
 }
 
+bool is_overload(const absl::Status& status) {
+  // Nothing but the words tells it from what our services exhaust.
+  return absl::IsResourceExhausted(status) && status.message().find("Threadpool") != std::string_view::npos;
+}
+
 }  // namespace penumbra

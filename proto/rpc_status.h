@@ -9,4 +9,7 @@ namespace penumbra {
 grpc::Status to_grpc(const absl::Status& status);
 absl::Status from_grpc(const grpc::Status& status);
 
+/// gRPC's own answer in place of a server that has a caller for each of its threads: worth another try.
+bool is_overload(const absl::Status& status);
+
 }  // namespace penumbra

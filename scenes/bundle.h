@@ -22,10 +22,13 @@ struct BundleEntry {
 };
 
 struct BundleIndex {
-  std::string main;  ///< name of the main scene file's entry
+  std::string main;                  ///< name of the main scene file's entry
   std::vector<BundleEntry> entries;  ///< sorted by name
   bool operator==(const BundleIndex&) const = default;
 };
+
+/// 10,000 files with long names have two megabytes.
+inline constexpr uint64_t kMostIndexBytes = uint64_t{64} << 20;
 
 /// Canonical JSON text of an index (its SHA-256 is the bundle's digest) and back. InvalidArgument for an
 /// index whose names are absolute, contain `..`, are repeated, or are too many.

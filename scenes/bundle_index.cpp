@@ -14,7 +14,6 @@ using nlohmann::json;
 
 // An index is text from a stranger: its limits are far above any scene's and far below any memory's.
 constexpr size_t kMostEntries = 1'000'000;
-constexpr size_t kMostIndexBytes = size_t{256} << 20;
 constexpr uint64_t kLargestFile = uint64_t{1} << 40;
 
 bool is_digest(std::string_view text) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace penumbra {
 namespace {
@@ -76,13 +77,17 @@ absl::StatusOr<const Type*> read_declaration(const Token& token, Param& param,
   return type;
 }
 
-absl::Status add_number(const Token& token, const Type& type, Param& param, Diagnostics& diagnostics) {
+/// `cut`: whether a number of this parameter was no whole one.
+absl::Status add_number(const Token& token, const Type& type, Param& param, bool& cut,
+                        Diagnostics& diagnostics) {
   ASSIGN_OR_RETURN(double value, number_of(token, diagnostics));
   if (type.values == Values::kIntegers) {
     if (value < std::numeric_limits<int32_t>::min() || value > std::numeric_limits<int32_t>::max())
       return diagnostics.error(token.loc, "'{}' does not fit an integer of 32 bits", token.text);
     if (value != std::trunc(value)) {
-      diagnostics.warn(token.loc, "\"integer {}\": {} is cut to {}", param.name, value, std::trunc(value));
+      if (!std::exchange(cut, true))  // once for all of them: meshes have many
+        diagnostics.warn(token.loc, "\"integer {}\": {} is cut to {}", printable(param.name), value,
+                         std::trunc(value));
       value = std::trunc(value);
     }
   }
@@ -97,7 +102,8 @@ absl::Status add_bool(const Token& token, Param& param, const Diagnostics& diagn
   return absl::OkStatus();
 }
 
-absl::Status add_value(const Token& token, const Type& type, Param& param, Diagnostics& diagnostics) {
+absl::Status add_value(const Token& token, const Type& type, Param& param, bool& cut,
+                       Diagnostics& diagnostics) {
   const bool quoted = token.kind == Token::Kind::kString;
   if (!quoted && token.kind != Token::Kind::kWord)
     return diagnostics.error(token.loc, "parameter \"{} {}\" has no value", param.type,
@@ -110,14 +116,14 @@ absl::Status add_value(const Token& token, const Type& type, Param& param, Diagn
       if (quoted)
         return diagnostics.error(token.loc, "\"{} {}\" takes numbers, not \"{}\"", param.type,
                                  printable(param.name), printable(token.text));
-      return add_number(token, type, param, diagnostics);
+      return add_number(token, type, param, cut, diagnostics);
     case Values::kStrings:
     case Values::kSpectrum:
       if (quoted) {
         param.strings.push_back(unescape(token.text));
         return absl::OkStatus();
       }
-      if (type.values == Values::kSpectrum) return add_number(token, type, param, diagnostics);
+      if (type.values == Values::kSpectrum) return add_number(token, type, param, cut, diagnostics);
       return diagnostics.error(token.loc, "\"{} {}\" takes a quoted value, not {}", param.type,
                                printable(param.name), printable(token.text));
   }
@@ -126,8 +132,9 @@ absl::Status add_value(const Token& token, const Type& type, Param& param, Diagn
 
 absl::Status read_values(TokenStream& tokens, const Type& type, Param& param, Diagnostics& diagnostics) {
   Token token = tokens.next();
+  bool cut = false;
   if (token.kind == Token::Kind::kError) return tokens.status();
-  if (token.kind != Token::Kind::kOpen) return add_value(token, type, param, diagnostics);
+  if (token.kind != Token::Kind::kOpen) return add_value(token, type, param, cut, diagnostics);
   const FileLoc opened = token.loc;
   for (;;) {
     token = tokens.next();
@@ -136,7 +143,7 @@ absl::Status read_values(TokenStream& tokens, const Type& type, Param& param, Di
     if (token.kind == Token::Kind::kEnd)
       return diagnostics.error(opened, "this [ is never closed: the text ends inside \"{} {}\"", param.type,
                                printable(param.name));
-    RETURN_IF_ERROR(add_value(token, type, param, diagnostics));
+    RETURN_IF_ERROR(add_value(token, type, param, cut, diagnostics));
   }
 }
 

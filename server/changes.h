@@ -116,6 +116,8 @@ struct StoredJob {
 struct StoredState {
   std::vector<StoredJob> jobs;  ///< in order of submission
   std::vector<WorkerInfo> workers;
+  /// Jobs that this version does not understand, and why: they stay in the store and are not served.
+  std::vector<std::pair<JobId, std::string>> unreadable = {};
 };
 
 }  // namespace penumbra

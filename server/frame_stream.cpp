@@ -10,6 +10,9 @@ namespace {
 // Pixels of one chunk: with 8 floats each it stays below a megabyte.
 constexpr int64_t kChunkPixels = 1 << 15;
 
+// Rows of a summary that travel in one message: a megabyte and a half. A large farm's run has a million.
+constexpr int kRowsOfMessage = 16384;
+
 /// Rows [y0,y1) of a layer with `channels` floats per pixel.
 void copy_rows(const std::vector<float>& layer, size_t channels, const PixelRect& window, int y0, int y1,
                google::protobuf::RepeatedField<float>& out) {
@@ -24,10 +27,25 @@ absl::Status FrameStream::write(const v1::FetchFramesResponse& message) {
   return writer_.Write(message) ? absl::OkStatus() : absl::CancelledError("the client has hung up");
 }
 
+std::vector<v1::RunSummary> parts_of(v1::RunSummary summary, int rows) {
+  google::protobuf::RepeatedPtrField<v1::TileRow> tiles;
+  summary.mutable_tiles()->Swap(&tiles);
+  std::vector<v1::RunSummary> parts;
+  parts.push_back(std::move(summary));
+  for (int row = 0; row < tiles.size(); ++row) {
+    if (row > 0 && row % rows == 0) parts.emplace_back();
+    parts.back().add_tiles()->Swap(tiles.Mutable(row));
+  }
+  return parts;
+}
+
 absl::Status FrameStream::summary(const RunSummary& summary) {
-  v1::FetchFramesResponse message;
-  *message.mutable_summary() = to_proto(summary);
-  return write(message);
+  for (v1::RunSummary& part : parts_of(to_proto(summary), kRowsOfMessage)) {
+    v1::FetchFramesResponse message;
+    message.mutable_summary()->Swap(&part);
+    if (absl::Status status = write(message); !status.ok()) return status;
+  }
+  return absl::OkStatus();
 }
 
 absl::Status FrameStream::frame(const AssembledFrame& frame) {

@@ -161,7 +161,7 @@ absl::Status JobRecord::set_plan(PlannedPasses planned) {
   return absl::OkStatus();
 }
 
-absl::Status JobRecord::restore(const StoredJob& stored) {
+absl::Status JobRecord::restore(const StoredJob& stored, const Now& now) {
   const auto broken = [&](std::string_view what) {
     return make_status(absl::StatusCode::kInternal, "job {} in the store: {}", header.id, what);
   };
@@ -169,6 +169,7 @@ absl::Status JobRecord::restore(const StoredJob& stored) {
     queue_.erase(id);
     tasks_[id].state = TaskState::kLeased;
     tasks_[id].epoch = epoch;
+    tasks_[id].since = now.steady;  // when it was leased is not known any more
     retries_ += epoch - 1;
     ++leased_;
   };

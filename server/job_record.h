@@ -110,7 +110,7 @@ class JobRecord {
   bool all_done() const { return plan_ && stage_done_ == stage_total_; }
 
   /// As stored: brings back plan, epochs, leases and results. Internal for a store that contradicts itself.
-  absl::Status restore(const StoredJob& stored);
+  absl::Status restore(const StoredJob& stored, const Now& now);
 
  private:
   void add_tasks(uint64_t count);

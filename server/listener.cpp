@@ -132,7 +132,8 @@ absl::StatusOr<Listener> listen(const ListenOptions& options, const std::vector<
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
   builder.SetMaxReceiveMessageSize(kMostMessageBytes);
   builder.SetMaxSendMessageSize(kMostMessageBytes);
-  // Callers in all: beyond it they wait, and threads and memory stay bounded.
+  // Callers in all, so that threads and memory stay bounded. gRPC refuses those beyond (is_overload), and
+  // they try again.
   builder.SetResourceQuota(grpc::ResourceQuota("penumbra-server").SetMaxThreads(kMostThreads));
   // Few threads that poll: with more, every message wakes several for nothing.
   builder.SetSyncServerOption(grpc::ServerBuilder::SyncServerOption::NUM_CQS, 1);

@@ -30,6 +30,8 @@ constexpr double kLeastTaskSeconds = 0.2, kMostTaskSeconds = 0.8;
 constexpr double kTasksPerRun = 256;
 // Ranges of a tile: an endless run gets longer tasks rather than millions of them.
 constexpr double kMostRanges = 1024;
+// Tasks of a job, which the coordinator holds in memory.
+constexpr double kMostTasks = 1 << 21;
 // A group is rendered within one task, so that it may not grow beyond this.
 constexpr double kMostGroupSeconds = 2;
 // CPU time of one ray and its shading where no measurement may be used. Only sets the size of tasks.
@@ -351,8 +353,9 @@ Plan make_plan(const JobSpec& spec, const PlannedPasses& planned) {
     for (const TilePlan& tile : a.tiles)
       plan.groups.back().push_back(choose_group(spec, tile, tile_seconds / most));
   }
+  const double most_ranges = std::min(kMostRanges, kMostTasks / static_cast<double>(tile_count(spec)));
   const double task_seconds = std::max(
-      std::clamp(seconds / kTasksPerRun, kLeastTaskSeconds, kMostTaskSeconds), tile_seconds / kMostRanges);
+      std::clamp(seconds / kTasksPerRun, kLeastTaskSeconds, kMostTaskSeconds), tile_seconds / most_ranges);
   add_boundaries(spec, plan,
                  boundary_shares(static_cast<double>(plan.group) / most, tile_seconds, task_seconds,
                                  all_borders(planned)));

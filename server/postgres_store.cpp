@@ -127,11 +127,15 @@ class PostgresStore final : public JobStore {
   absl::StatusOr<StoredState> load() override {
     StoredState state;
     std::map<JobId, size_t> number;
-    ASSIGN_OR_RETURN(const PgRows jobs, db_.query("SELECT header FROM jobs ORDER BY number"));
+    ASSIGN_OR_RETURN(const PgRows jobs, db_.query("SELECT id, header FROM jobs ORDER BY number"));
     for (int i = 0; i < jobs.count(); ++i) {
-      ASSIGN_OR_RETURN(JobHeader header, parse_header(jobs.bytes(i, 0)));
-      number[header.id] = state.jobs.size();
-      state.jobs.push_back({std::move(header), {}, {}, {}});
+      absl::StatusOr<JobHeader> header = parse_header(jobs.bytes(i, 1));
+      if (!header.ok()) {
+        state.unreadable.emplace_back(jobs.bytes(i, 0), message_of(header.status()));
+        continue;
+      }
+      number[header->id] = state.jobs.size();
+      state.jobs.push_back({*std::move(header), {}, {}, {}});
     }
     const auto job_of = [&](const PgRows& rows, int i) -> StoredJob* {
       const auto it = number.find(rows.bytes(i, 0));

@@ -84,6 +84,7 @@ std::vector<JobId> overdue_jobs(const Taken& taken, const BlobFolder& blobs, uin
 
 absl::StatusOr<Swept> sweep(Coordinator& coordinator, const RetentionLimits& limits) {
   const BlobFolder& blobs = coordinator.blobs();
+  blobs.drop_stale_partials();
   Swept swept;
   uint64_t bytes = 0;
   RETURN_IF_ERROR(blobs.each([&](const BlobFile& file) { bytes += file.bytes; }));

@@ -5,6 +5,7 @@
 
 #include "proto/blocks.h"
 #include "proto/status.h"
+#include "proto/wire_text.h"
 
 namespace penumbra {
 namespace {
@@ -34,7 +35,10 @@ absl::Status check_result(const JobSpec& spec, const TileTask& task, const Compl
                           const absl::StatusOr<ResultShape>& shape) {
   if (done.costs.size() != costs_of(task))
     return invalid_input("{} costs, where the task has {}", done.costs.size(), costs_of(task));
-  if (task.kind == TaskKind::kPilot) return absl::OkStatus();
+  if (task.kind == TaskKind::kPilot) {
+    if (!done.result.empty()) return invalid_input("a result, where a pilot has none");
+    return absl::OkStatus();
+  }
   if (!shape.ok()) return shape.status();
   if (shape->rect != task.tile) return invalid_input("the result covers another tile");
   if (shape->passes.size() != task.passes.size())
@@ -100,9 +104,17 @@ JobRecord* Scheduler::find_job(const JobId& id) {
 
 absl::Status Scheduler::restore(const StoredState& stored, const Now& now) {
   for (const WorkerInfo& worker : stored.workers) contributors_[worker.id] = worker;
+  const auto note_unreadable = [&](const JobId& id, const std::string& why) {
+    notices_.push_back({About{id, {}, {}, {}}, "stays in the store and is not served: " + why});
+  };
+  for (const auto& [id, why] : stored.unreadable) note_unreadable(id, why);
   for (const StoredJob& kept : stored.jobs) {
     auto job = std::make_unique<JobRecord>(kept.header);
-    RETURN_IF_ERROR(job->restore(kept));
+    // One job that is not understood must not keep the others from being served.
+    if (const absl::Status restored = job->restore(kept, now); !restored.ok()) {
+      note_unreadable(kept.header.id, message_of(restored));
+      continue;
+    }
     job->scheduler_cpu_base = now.process_cpu;
     for (const StoredJob::Lease& lease : kept.leases) {
       const TaskRecord& task = *job->task(lease.lease.task);
@@ -287,7 +299,10 @@ void Scheduler::complete(WorkerRecord& worker, const CompletedTask& done,
   advance(job, now);
 }
 
-void Scheduler::fail(WorkerRecord& worker, const FailedTask& failed, const Now& now) {
+void Scheduler::fail(WorkerRecord& worker, FailedTask failed, const Now& now) {
+  // What is made of it is stored and told, and must not be too long for that.
+  constexpr size_t kMostMessage = 4096;
+  failed.message = wire_text(failed.message, kMostMessage);
   const auto mine = worker.leases.find({failed.lease.job, failed.lease.task});
   if (mine == worker.leases.end() || mine->second != failed.lease.epoch) return;
   JobRecord& job = *find_job(failed.lease.job);

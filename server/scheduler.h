@@ -150,7 +150,7 @@ class Scheduler {
   absl::StatusOr<WorkerRecord*> meet(const WorkerState& state, const Now& now);
   void complete(WorkerRecord& worker, const CompletedTask& task, const absl::StatusOr<ResultShape>& shape,
                 const Now& now);
-  void fail(WorkerRecord& worker, const FailedTask& task, const Now& now);
+  void fail(WorkerRecord& worker, FailedTask failed, const Now& now);
   void take_load(const LoadedScene& scene);
   void blame_failure(JobRecord& job, uint64_t task, WorkerRecord& worker, const std::string& message,
                      const Now& now);

@@ -125,10 +125,14 @@ class SqliteStore final : public JobStore {
   absl::StatusOr<StoredState> load() override {
     StoredState state;
     std::map<JobId, size_t> number;
-    RETURN_IF_ERROR(each("SELECT header FROM jobs ORDER BY number", [&](Statement& row) -> absl::Status {
-      ASSIGN_OR_RETURN(JobHeader header, parse_header(row.text(0)));
-      number[header.id] = state.jobs.size();
-      state.jobs.push_back({std::move(header), {}, {}});
+    RETURN_IF_ERROR(each("SELECT id, header FROM jobs ORDER BY number", [&](Statement& row) -> absl::Status {
+      absl::StatusOr<JobHeader> header = parse_header(row.text(1));
+      if (!header.ok()) {
+        state.unreadable.emplace_back(row.text(0), message_of(header.status()));
+        return absl::OkStatus();
+      }
+      number[header->id] = state.jobs.size();
+      state.jobs.push_back({*std::move(header), {}, {}});
       return absl::OkStatus();
     }));
     RETURN_IF_ERROR(each("SELECT * FROM leases", [&](Statement& row) -> absl::Status {

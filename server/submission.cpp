@@ -9,8 +9,15 @@
 namespace penumbra {
 namespace {
 
+// What a job may ask of the coordinator's memory: a plan has a dozen ranges and more (server/planner.cpp),
+// and each of them is a task of some 250 bytes for every tile.
+constexpr uint64_t kMostTilesOfJob = uint64_t{1} << 17;
+
 /// The bundle's index must be sound and all its blobs here, or a worker would find out much later.
 absl::Status check_bundle(const BlobFolder& blobs, const JobSpec& spec) {
+  // Looked at before it is read: a blob may be larger than memory.
+  if (blobs.size(spec.bundle).value_or(0) > kMostIndexBytes)
+    return invalid_input("bundle: an index of more than {} bytes", kMostIndexBytes);
   const absl::StatusOr<std::string> json = blobs.read(spec.bundle);
   if (!json.ok())
     return make_status(absl::StatusCode::kFailedPrecondition, "the bundle's index {} is missing",
@@ -36,8 +43,9 @@ absl::StatusOr<JobSpec> checked_spec(const BlobFolder& blobs, const v1::SubmitRe
     return invalid_input("request_id: must have 1 to 128 characters");
   ASSIGN_OR_RETURN(JobSpec spec, from_proto(request.spec()));
   // Counted, not listed: 65536² tiles of a pixel would be 64 GiB.
-  if (tile_count(spec) > kMostTiles)
-    return invalid_input("tile: {} pixels make more than {} tiles of this picture", spec.tile, kMostTiles);
+  if (tile_count(spec) > kMostTilesOfJob)
+    return invalid_input("tile: {} pixels make more than {} tiles of this picture", spec.tile,
+                         kMostTilesOfJob);
   if (!spec.plan.empty())
     RETURN_IF_ERROR(check_stages(spec, {spec.plan, spec.auto_plans, spec.earlier_plans}));
   RETURN_IF_ERROR(check_bundle(blobs, spec));

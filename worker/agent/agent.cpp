@@ -9,6 +9,7 @@
 
 #include "proto/convert.h"
 #include "proto/rpc_status.h"
+#include "proto/wire_text.h"
 #include "worker/agent/identity.h"
 #include "worker/agent/log_capture.h"
 
@@ -21,6 +22,8 @@ constexpr uint32_t kWaitMilliseconds = 4000;
 constexpr double kBusySeconds = 0.5;
 // A call that takes longer than its wait and this is lost.
 constexpr int kCallSeconds = 10;
+// What a scene can make us say travels in every Sync until it is acknowledged: one text, and all of a scene.
+constexpr size_t kMostText = 4096, kMostTexts = size_t{256} << 10;
 // Between attempts to reach a server that is away.
 constexpr double kRetrySeconds = 0.2;
 
@@ -199,10 +202,12 @@ void Agent::render_loop() {
       board_.drop(*assignment);
     } else if (!outcome.ok()) {
       log_about(spdlog::level::warn, about(assignment->lease), message_of(outcome.status()));
-      board_.fail(*assignment, failure_of(outcome.status()), message_of(outcome.status()), capture.text());
+      board_.fail(*assignment, failure_of(outcome.status()),
+                  wire_text(message_of(outcome.status()), kMostText),
+                  wire_text(capture.text(), LogCapture::kMostBytes));
     } else {
       log_about(spdlog::level::debug, about(assignment->lease), rendered_text(*assignment, *outcome));
-      hand_in(assignment, *std::move(outcome), capture.text());
+      hand_in(assignment, *std::move(outcome), wire_text(capture.text(), LogCapture::kMostBytes));
     }
   }
 }
@@ -220,9 +225,10 @@ absl::StatusOr<TaskOutcome> Agent::outcome_of(const Assignment& assignment) {
                         steady_seconds() - asked, cached.report.parse_seconds, cached.report.build_seconds,
                         cached.report.warnings.size()));
   LoadedScene loaded{assignment.lease.job, cached.report, {}};
+  loaded.report.warnings = wire_texts(cached.report.warnings, kMostText, kMostTexts);
   for (size_t m = 0; m < assignment.job->mixes.size(); ++m)
-    for (std::string& text : cached.scene->substitutions(assignment.job->mixes[m]))
-      loaded.substitutions.push_back({static_cast<int>(m), std::move(text)});
+    for (const std::string& text : cached.scene->substitutions(assignment.job->mixes[m]))
+      loaded.substitutions.push_back({static_cast<int>(m), wire_text(text, kMostText)});
   board_.loaded(loaded);
   try {
     return cached.scene->render(*assignment.job, assignment.task, assignment.cancel);

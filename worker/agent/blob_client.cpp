@@ -6,12 +6,10 @@
 
 #include "proto/channel.h"
 #include "proto/rpc_status.h"
+#include "scenes/bundle.h"
 
 namespace penumbra {
 namespace {
-
-// A bundle's index; 10,000 files with long names have two megabytes.
-constexpr uint64_t kMostIndexBytes = 64 << 20;
 
 /// What the server sent is not what it was asked for: its disk's fault, not the scene's.
 absl::Status sent_corrupt(const absl::Status& status) {

@@ -5,6 +5,7 @@
 #include <new>
 #include <thread>
 
+#include "proto/rpc_status.h"
 #include "proto/status.h"
 #include "scenes/bundle.h"
 
@@ -30,13 +31,18 @@ absl::Status lost_input(const absl::Status& status) {
                      "the server has lost a file of the scene, submit it again: {}", message_of(status));
 }
 
-/// Tries again for as long as the server is away.
+/// The server is away, or has more callers than it serves at a time (server/listener.cpp).
+bool worth_trying_again(const absl::Status& status) {
+  return absl::IsUnavailable(status) || is_overload(status);
+}
+
+/// Tries again for as long as the server is away or busy.
 absl::StatusOr<BundleIndex> fetch_patiently(const BlobClient& blobs, const BlobFolder& folder,
                                             const Digest& bundle, const std::function<bool()>& give_up) {
   for (;;) {
     absl::StatusOr<BundleIndex> index = fetch_bundle(blobs, folder, bundle);
     if (index.ok()) return index;
-    if (!absl::IsUnavailable(index.status())) return lost_input(index.status());
+    if (!worth_trying_again(index.status())) return lost_input(index.status());
     if (give_up()) return absl::CancelledError("given up while the server was away");
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
   }

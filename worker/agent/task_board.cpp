@@ -109,7 +109,9 @@ uint32_t TaskBoard::lost_threads() const {
 
 bool TaskBoard::full() const {
   const std::lock_guard lock(mutex_);
-  return !draining_ && !closed_ && held_.size() >= wanted_;
+  const uint32_t lost = lost_threads();
+  const auto held = std::count_if(held_.begin(), held_.end(), [](const auto& h) { return !h.second.lost; });
+  return !draining_ && !closed_ && static_cast<uint32_t>(held) >= wanted_ - std::min(wanted_, lost);
 }
 
 bool TaskBoard::wait_for_news(double seconds) {

@@ -146,6 +146,22 @@ TEST(TaskBoard, WhatIsNoLongerDesiredIsCancelled) {
   EXPECT_TRUE(board.empty());
 }
 
+TEST(TaskBoard, AThreadThatGoesOnInVainFillsItsPlaces) {
+  TaskBoard board(1);
+  EXPECT_FALSE(board.full());
+  const LeaseId id{"j", 1, 1};
+  board.apply(leases({id}), told(board));
+  const auto assignment = board.take();
+  EXPECT_FALSE(board.full()) << "one of two";
+  board.apply(leases({}), told(board));
+  const WorkerState state = told(board);
+  EXPECT_EQ(state.wanted, 0u);
+  EXPECT_TRUE(state.held.empty());
+  EXPECT_TRUE(board.full()) << "else it would call without a pause";
+  board.drop(*assignment);
+  EXPECT_FALSE(board.full());
+}
+
 TEST(TaskBoard, AnAnswerToAnOlderStateDropsNothingNewer) {
   TaskBoard board(2);
   const WorkerState before = told(board);

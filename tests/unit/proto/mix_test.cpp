@@ -36,8 +36,9 @@ TEST(Mix, TheNormalFormSaysNothingOfPointsOnTheLens) {
 }
 
 TEST(Mix, LabelsAreReadBack) {
-  for (const char* text : {"sa/lens=line", "sa/motion=line", "sa:2/free/pixel=line", "bsdf+line-sa@v:3/smooth=0.25/lens=line",
-                           "sa+area/average/lens=line", "line-area@33.5:2/smooth-ease=auto", "bsdf:1/free"}) {
+  for (const char* text :
+       {"sa/lens=line", "sa/motion=line", "sa:2/free/pixel=line", "bsdf+line-sa@v:3/smooth=0.25/lens=line",
+        "sa+area/average/lens=line", "line-area@33.5:2/smooth-ease=auto", "bsdf:1/free"}) {
     const auto mix = parse_mix(text);
     ASSERT_TRUE(mix.ok()) << text;
     const auto again = parse_mix(label(*mix));
@@ -64,6 +65,13 @@ TEST(Mix, FaultsNameTheWord) {
     ASSERT_FALSE(mix.ok()) << text;
     EXPECT_THAT(message_of(mix.status()), HasSubstr(message)) << text;
   }
+}
+
+TEST(Mix, HasNoMoreStrategiesThanItsNormalFormHasRoomFor) {
+  std::string text = "sa";
+  for (int i = 1; i < 64; ++i) text += "+sa";
+  EXPECT_TRUE(parse_mix(text).ok());
+  EXPECT_THAT(message_of(parse_mix(text + "+sa").status()), HasSubstr("more than 64 strategies"));
 }
 
 }  // namespace

@@ -180,6 +180,13 @@ TEST(Planner, TasksStayShortAndTheirNumberBounded) {
   EXPECT_LE(make_plan(endless, {int64_t{1} << 38}).boundaries.size(), 2100u);
 }
 
+TEST(Planner, ManyTilesHaveFewRanges) {
+  JobSpec spec = spec_of(2048, 1024, {"sa:4"}, SppBudget{int64_t{1} << 30});
+  spec.tile = 8;
+  const Plan plan = make_plan(spec, {int64_t{1} << 30});
+  EXPECT_LE(task_count(plan, tiles_of(spec)), uint64_t{1} << 22);
+}
+
 TEST(Planner, APlanDependsOnNothingElse) {
   const JobSpec spec = spec_of(300, 200, {"sa:4", "bsdf:4"}, CpuSecondsBudget{20});
   EXPECT_EQ(make_plan(spec, {40, 60}), make_plan(spec, {40, 60}));

@@ -46,6 +46,30 @@ TEST_F(SchedulerTest, OneWorkerAloneDoesNotFailForEver) {
   EXPECT_EQ(rounds, 5);
 }
 
+TEST_F(SchedulerTest, APilotThatNamesAResultIsRefused) {
+  submit(CpuSecondsBudget{1});
+  WorkerState a = worker("a", "0");
+  sync(a);
+  finish_all(a);
+  ASSERT_EQ(a.completed.size(), 1u);
+  ASSERT_TRUE(a.completed[0].result.empty()) << "a pilot";
+  // There is no such blob: a server that stored the result would look for it on its disk, in vain.
+  a.completed[0].result = Digest(64, 'c');
+  sync(a);
+  for (const Change& change : changes_) EXPECT_FALSE(std::holds_alternative<PutResult>(change));
+}
+
+TEST_F(SchedulerTest, WhatAWorkerSaysIsKeptShort) {
+  const JobId job = submit(SppBudget{16});
+  WorkerState a = worker("a", "0");
+  sync(a);
+  a.failed.push_back({a.held[0].lease, TaskFailure::kBadInput, std::string(60'000, 'x'), {}});
+  a.held.clear();
+  sync(a);
+  EXPECT_EQ(scheduler_.find(job)->header.state, JobState::kFailed);
+  EXPECT_LE(scheduler_.find(job)->header.message.size(), 5000u);
+}
+
 TEST_F(SchedulerTest, HandingBackIsNoFailure) {
   const JobId job = submit();
   WorkerState a = worker("a", "0");

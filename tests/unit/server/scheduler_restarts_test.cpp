@@ -165,6 +165,42 @@ TEST_F(SchedulerTest, FailuresCountOverRestarts) {
   EXPECT_EQ(scheduler_.find(job)->header.state, JobState::kFailed);
 }
 
+TEST_F(SchedulerTest, ARestartTakesNoLeaseAwayForItsAge) {
+  now_.steady = 1e6;  // a host that has been up for days
+  const JobId job = submit(SppBudget{16});
+  collect();
+  WorkerState a = worker("a", "0", 2);
+  sync(a);
+  ASSERT_EQ(a.held.size(), 2u);
+  scheduler_ = Scheduler();
+  ASSERT_TRUE(scheduler_.restore(replay(changes_), now_).ok());
+  now_.steady += 1;
+  scheduler_.expire(now_);
+  sync(a);
+  EXPECT_EQ(a.held.size(), 2u);
+  EXPECT_EQ(scheduler_.find(job)->header.faults.overdue_leases, 0u);
+}
+
+TEST_F(SchedulerTest, AJobThatIsNotUnderstoodKeepsNoOtherFromBeingServed) {
+  const JobId good = submit(SppBudget{16});
+  const JobId bad = scheduler_.submit("j2", "another request", spec_of(SppBudget{16}), now_);
+  collect();
+  StoredState stored = replay(changes_);
+  for (StoredJob& job : stored.jobs)
+    if (job.header.id == bad) job.results.push_back({{bad, uint64_t{1} << 40, 1}, Digest(64, 'b'), {}, "w"});
+  stored.unreadable.emplace_back("gone", "too long");
+  scheduler_ = Scheduler();
+  ASSERT_TRUE(scheduler_.restore(stored, now_).ok());
+  EXPECT_NE(scheduler_.find(good), nullptr);
+  EXPECT_EQ(scheduler_.find(bad), nullptr);
+  std::vector<std::string> said;
+  for (const Notice& notice : scheduler_.take_notices())
+    said.push_back(notice.about.job + ": " + notice.text);
+  ASSERT_EQ(said.size(), 2u);
+  EXPECT_EQ(said[0], "gone: stays in the store and is not served: too long");
+  EXPECT_EQ(said[1].find(bad + ": stays in the store and is not served: "), 0u) << said[1];
+}
+
 TEST_F(SchedulerTest, OnlyFinalJobsAreForgotten) {
   const JobId job = submit();
   scheduler_.forget(job);
