@@ -88,7 +88,7 @@ void add_flags(CLI::App& app, Options& options) {
   app.add_option("--keep", options.retention.keep_seconds, "finished jobs for so long, e.g. 720h")
       ->transform(seconds_flag());
   app.add_option("--keep-bytes", options.retention.keep_bytes,
-                 "of blobs, e.g. 100G; above it the oldest finished jobs go")
+                 "of results, e.g. 100G; above it the oldest finished jobs go")
       ->transform(CLI::AsSizeValue(false));
   app.add_option("--keep-uploads", options.retention.keep_uploads_seconds,
                  "uploads that no job names for so long, e.g. 24h")

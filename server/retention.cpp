@@ -62,9 +62,11 @@ uint64_t bytes_of(const KeptJob& job, const BlobFolder& blobs) {
   return bytes;
 }
 
-/// The jobs that must go, oldest first.
-std::vector<JobId> overdue_jobs(const Taken& taken, const BlobFolder& blobs, uint64_t bytes,
-                                const RetentionLimits& limits) {
+/// The jobs that must go, oldest first. Only results count: a scene's files outlive its jobs anyway, so that
+/// forgetting a job would not make room for them.
+std::vector<JobId> overdue_jobs(const Taken& taken, const BlobFolder& blobs, const RetentionLimits& limits) {
+  uint64_t bytes = 0;
+  for (const KeptJob& job : taken.jobs) bytes += bytes_of(job, blobs);
   std::vector<const KeptJob*> finished;
   for (const KeptJob& job : taken.jobs)
     if (job.final) finished.push_back(&job);
@@ -86,10 +88,8 @@ absl::StatusOr<Swept> sweep(Coordinator& coordinator, const RetentionLimits& lim
   const BlobFolder& blobs = coordinator.blobs();
   blobs.drop_stale_partials();
   Swept swept;
-  uint64_t bytes = 0;
-  RETURN_IF_ERROR(blobs.each([&](const BlobFile& file) { bytes += file.bytes; }));
   ASSIGN_OR_RETURN(const Taken before, take_jobs(coordinator));
-  const std::vector<JobId> overdue = overdue_jobs(before, blobs, bytes, limits);
+  const std::vector<JobId> overdue = overdue_jobs(before, blobs, limits);
   const auto forgotten = coordinator.call([&](Scheduler& scheduler, const Now&) {
     for (const JobId& id : overdue) scheduler.forget(id);
     return overdue.size();

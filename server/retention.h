@@ -12,7 +12,7 @@ namespace penumbra {
 
 struct RetentionLimits {
   double keep_seconds = 30 * 86400.0;     ///< finished jobs older than this go
-  uint64_t keep_bytes = UINT64_MAX;       ///< of blobs; above it the oldest finished jobs go
+  uint64_t keep_bytes = UINT64_MAX;       ///< of results; above it the oldest finished jobs go
   double keep_uploads_seconds = 86400.0;  ///< blobs that no job names, since they were last asked for
 };
 

@@ -290,5 +290,16 @@ TEST(Durability, FinishedJobsAgeOutWithTheirBlobs) {
   EXPECT_TRUE(std::filesystem::exists(cluster.blob_path(sha256("60")))) << "the running job does";
 }
 
+TEST(Durability, ALargeSceneDoesNotAgeOutItsJobs) {
+  Cluster cluster(test_name());
+  cluster.server_flags = {"--keep-bytes", "512K", "--keep-uploads", "1s"};
+  cluster.start_server();
+  cluster.start_worker(2);
+  const JobId job = cluster.submit(cluster.spec(cluster.upload_scene("0" + std::string(1 << 20, ' '))));
+  cluster.wait_end(job);
+  sleep_seconds(3);  // three sweeps
+  EXPECT_EQ(cluster.status(job).job, job) << "its results are small";
+}
+
 }  // namespace
 }  // namespace penumbra
