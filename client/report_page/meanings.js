@@ -36,7 +36,8 @@ const meanings = {
   seed: "Random numbers are keyed by it: the same seed, plan and program give the same bits.",
   threads: "Threads that render.",
   region: "relMSE of the region's pixels alone, with its 95 % interval.",
-  selection: "Computed on this page from the images it holds (half floats): the mean over the drawn pixels of the relative squared error.",
+  selection: "Computed on this page from the images it holds (half floats): the mean over the drawn pixels of the relative squared error, "
+    + "without a reference of what the run itself expects of it. Errors of images shown smaller were taken at full resolution.",
 };
 
 /** Gives a node its meaning: a key of `meanings`, or text. */

@@ -23,10 +23,11 @@ async function decodePlanes(packed, count, n) {
   });
 }
 
-/** {width, height, scale, x0, y0, planes: [R, G, B], cost?, samples?, noise?}; planes are row-major. */
+/** {width, height, scale, x0, y0, x1, y1, planes: [R, G, B], cost?, samples?, noise?, error?}; planes are row-major. */
 async function decodeImage(image) {
   const n = image.width * image.height;
-  const out = { width: image.width, height: image.height, scale: image.scale, x0: image.x0, y0: image.y0 };
+  const out = { width: image.width, height: image.height, scale: image.scale };
+  for (const edge of ["x0", "y0", "x1", "y1"]) out[edge] = image[edge];
   out.planes = await decodePlanes(image, 3, n);
   for (const [name, layer] of Object.entries(image.layers || {})) [out[name]] = await decodePlanes(layer, 1, n);
   return out;
@@ -42,18 +43,29 @@ function pixelError(image, reference, i) {
   return sum / 3;
 }
 
-/** A plane of pixelError, made once per image. */
+/**
+ * A plane of pixelError, made once per image. One shown smaller brings its own, averaged after the error was taken at
+ * full resolution: averaged colours have scale² less noise.
+ */
 function errorPlane(image, reference) {
   if (!image.error) image.error = Float32Array.from({ length: image.width * image.height }, (_, i) => pixelError(image, reference, i));
   return image.error;
 }
 
-/** Mean of a plane over the pixels [x0,x1) × [y0,y1) of the full image. */
+/**
+ * Mean of a plane over the pixels [x0,x1) × [y0,y1) of the full image. A pixel of the plane counts for as many as it is the
+ * mean of: at the right and bottom edge fewer than elsewhere.
+ */
 function meanOver(image, plane, [x0, y0, x1, y1]) {
   const s = image.scale, left = Math.floor((x0 - image.x0) / s), right = Math.ceil((x1 - image.x0) / s);
+  const across = (i, origin, end) => Math.min(s, end - origin - i * s);
   let sum = 0, count = 0;
   for (let y = Math.floor((y0 - image.y0) / s); y < Math.ceil((y1 - image.y0) / s); ++y)
-    for (let x = left; x < right; ++x, ++count) sum += plane[y * image.width + x];
+    for (let x = left; x < right; ++x) {
+      const pixels = across(x, image.x0, image.x1) * across(y, image.y0, image.y1);
+      sum += pixels * plane[y * image.width + x];
+      count += pixels;
+    }
   return count ? sum / count : NaN;
 }
 

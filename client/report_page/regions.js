@@ -35,7 +35,9 @@ function drawRegions(s) {
 /** Shift + drag (or the button, then a drag) draws a region. */
 function connectSelection(s) {
   let start = null;
-  const corner = ([x, y], far) => [s.image.x0 + (x + far) * s.image.scale, s.image.y0 + (y + far) * s.image.scale];
+  // The last pixels of an image shown smaller may stand for fewer than the others.
+  const corner = ([x, y], far) => [Math.min(s.image.x1, s.image.x0 + (x + far) * s.image.scale),
+    Math.min(s.image.y1, s.image.y0 + (y + far) * s.image.scale)];
   s.view.addEventListener("pointerdown", (event) => {
     if (!viewer.drawing && !event.shiftKey) return;
     start = pixelAt(s, event);
@@ -70,7 +72,7 @@ function regionControls() {
   return button;
 }
 
-/** What the drawn region has: relMSE by the page's own images, or else the mean of the own noise. */
+/** What the drawn region has: relMSE by the page's own planes, or else the mean of the own noise. */
 function selectionValue(i) {
   const s = viewer.shown.find((one) => one.index === i);
   if (!s) return null;

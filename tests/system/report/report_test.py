@@ -21,11 +21,12 @@ SVG = "{http://www.w3.org/2000/svg}"
 
 
 def setUpModule():
-    global FOLDER, RUN, ALONE, TRANSIENT
+    global FOLDER, RUN, ALONE, TRANSIENT, LARGE
     FOLDER = tempfile.TemporaryDirectory(prefix="penumbra_report_")
     RUN = runs.with_reference(PROGRAM, SCENE, pathlib.Path(FOLDER.name))
     ALONE = runs.without_reference(PROGRAM, SCENE, pathlib.Path(FOLDER.name))
     TRANSIENT = runs.transient(PROGRAM, SCENE, pathlib.Path(FOLDER.name))
+    LARGE = runs.large(PROGRAM, SCENE, pathlib.Path(FOLDER.name))
 
 
 def tearDownModule():
@@ -343,6 +344,36 @@ class WithoutReference(Page):
 
     def test_has_no_flip_book(self):
         self.assertEqual(self.js("return document.querySelectorAll('#flip-section').length"), 0)
+
+
+class Large(Page):
+    """Shown smaller than it is: figures are those of its own pixels all the same."""
+    run_folder = staticmethod(lambda: LARGE)
+    whole = "[0, 0, 1101, 961]"
+
+    def mixes(self):
+        return enumerate(json.loads((LARGE / "run.json").read_text())["mixes"])
+
+    def test_errors_are_those_of_run_json(self):
+        self.assertEqual(self.js("return viewer.reference.scale"), 2)
+        for i, mix in self.mixes():
+            mean = self.js(f"const s = viewer.shown[arguments[0]]; return meanOver(s.image, errorPlane(s.image, viewer.reference), {self.whole})", i)
+            self.assertLess(abs(mean / mix["relmse"] - 1), 2e-3)
+
+    def test_own_noise_is_that_of_run_json(self):
+        for i, mix in self.mixes():
+            mean = self.js(f"const s = viewer.shown[arguments[0]]; return meanOver(s.image, s.image.noise, {self.whole})", i)
+            self.assertLess(abs(mean / mix["estimated_relmse"] - 1), 5e-3)
+
+    def test_a_region_is_drawn_to_the_edge_and_not_beyond(self):
+        self.js("""viewer.drawing = true;
+          const view = document.querySelector('.view'), box = view.getBoundingClientRect();
+          view.setPointerCapture = () => {};
+          const at = (type, fx, fy) => view.dispatchEvent(new PointerEvent(type, {clientX: box.left + fx * box.width, clientY: box.top + fy * box.height}));
+          at('pointerdown', 0.001, 0.001); at('pointermove', 0.999, 0.999); at('pointerup', 0.999, 0.999);""")
+        self.assertIn("--region drawn=0,0,1101,961", self.browser.text("#selection-flag"))
+        for _, mix in self.mixes():
+            self.assertIn(self.js("return significant(arguments[0], 2)", mix["relmse"])[:3], self.browser.text("#regions"))
 
 
 class Transient(Page):
