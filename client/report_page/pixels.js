@@ -68,35 +68,3 @@ function meanOver(image, plane, [x0, y0, x1, y1]) {
     }
   return count ? sum / count : NaN;
 }
-
-/** Sums of a plane over 16×16 blocks of pixels. */
-function blockSums(image, plane) {
-  const columns = Math.ceil(image.width / 16), sums = new Float64Array(columns * Math.ceil(image.height / 16));
-  for (let y = 0; y < image.height; ++y)
-    for (let x = 0; x < image.width; ++x) sums[(y >> 4) * columns + (x >> 4)] += plane[y * image.width + x];
-  return sums;
-}
-
-/** 95 % interval of the ratio of two images' errors, the same blocks drawn for both (2,000 times, always the same draws). */
-function pairedInterval(a, b) {
-  let state = 0x70656e75;
-  const random = () => {  // mulberry32
-    state = (state + 0x6d2b79f5) | 0;
-    let t = Math.imul(state ^ (state >>> 15), 1 | state);
-    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
-    return ((t ^ (t >>> 14)) >>> 0) / 4294967296;
-  };
-  if (a.length < 2) return null;
-  const ratios = new Float64Array(2000);
-  for (let r = 0; r < ratios.length; ++r) {
-    let above = 0, below = 0;
-    for (let i = 0; i < a.length; ++i) {
-      const k = Math.floor(random() * a.length);
-      above += a[k];
-      below += b[k];
-    }
-    ratios[r] = above / below;
-  }
-  ratios.sort();
-  return Number.isFinite(ratios[ratios.length - 1]) ? [ratios[50], ratios[1949]] : null;
-}

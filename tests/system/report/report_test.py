@@ -5,6 +5,7 @@
 import csv
 import io
 import json
+import math
 import pathlib
 import re
 import sys
@@ -215,11 +216,21 @@ class WithReference(Page):
         self.assertEqual(self.js("return document.querySelectorAll('#budget .point').length"), len(runs.MIXES))
         self.assertIn("100.0 %" if len(self.js("return run.workers")) == 1 else "%", self.browser.text("#workers"))
 
-    def test_ratios_get_paired_intervals(self):
-        self.browser.wait("return [...document.querySelectorAll('.ratio-cell .ci')].length === arguments[0]".replace("arguments[0]", str(len(runs.MIXES) - 1)))
-        low, high = self.js("return pairedInterval([2, 4, 6, 8], [1, 2, 3, 4])")
-        self.assertAlmostEqual(low, 2)
-        self.assertAlmostEqual(high, 2)
+    def test_ratios_have_the_intervals_of_independent_errors(self):
+        low, high = self.js("return ratioInterval({relmse: 6, relmse_ci: [2, 18]}, {relmse: 3, relmse_ci: [1.5, 6]})")
+        width = math.hypot(math.log(3), math.log(2))
+        self.assertAlmostEqual(low, 2 * math.exp(-width))
+        self.assertAlmostEqual(high, 2 * math.exp(width))
+        for unknown in ("null", "[0, 1]"):
+            self.assertIsNone(self.js(f"return ratioInterval({{relmse: 6, relmse_ci: {unknown}}}, {{relmse: 3, relmse_ci: [1.5, 6]}})"))
+        run = json.loads((RUN / "run.json").read_text())
+        best = min(run["mixes"], key=lambda m: m["relmse"])
+        for mix in run["mixes"]:
+            if mix is best:
+                continue
+            half = [math.log(m["relmse_ci"][1] / m["relmse_ci"][0]) / 2 for m in (mix, best)]
+            ends = [mix["relmse"] / best["relmse"] * math.exp(sign * math.hypot(*half)) for sign in (-1, 1)]
+            self.assertIn(self.js("return interval(arguments[0])", ends), self.browser.text("#table"))
 
     def test_keyboard_reaches_meanings(self):
         self.js("document.querySelector('th .explained').focus()")
@@ -283,6 +294,8 @@ class Exports(Page):
             self.assertEqual(line.count("$") % 2, 0, line)
         self.assertEqual(text.count("\\begin{"), text.count("\\end{"))
         self.assertEqual(text.count("\\textbf"), 1)
+        self.assertIn("cells of $2 \\times 2$ pixels", text)
+        self.assertNotIn("blocks", text)
         self.assertEqual(self.js("return latexText('a_b%c&d#{e}')"), r"a\_b\%c\&d\#\{e\}")
         self.assertEqual(self.js("return latexNumber(1.234e-5)"), r"$1.23 \times 10^{-5}$")
 
@@ -337,6 +350,10 @@ class WithoutReference(Page):
         modes = self.js("return [...document.querySelectorAll('#modes button')].map((b) => b.dataset.choice)")
         self.assertEqual(modes, ["colour", "noise", "cost", "samples"])
         self.assertEqual(self.js("return document.querySelectorAll('#chart .curve').length"), len(runs.MIXES))
+
+    def test_the_intervals_of_estimates_are_those_of_blocks(self):
+        self.assertIn("resampled $16 \\times 16$ blocks", self.js("return latexTable()"))
+        self.assertEqual(self.js("return [...document.querySelectorAll('#table [data-meaning^=\"Error of this mix\"] .ci')].length"), 0)
 
     def test_a_budget_in_samples_has_no_adherence(self):
         self.assertIn("CPU seconds per mix", self.browser.text("#budget-section h2"))
