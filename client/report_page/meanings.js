@@ -23,7 +23,8 @@ const meanings = {
   error_at: "The error at the chosen time, read off the curve (straight between measured points on both logarithmic axes), with its 95 % band.",
   time_to: "CPU seconds until the curve first falls to the chosen error. The range is where the 95 % band's two edges do.",
   extrapolated: "Beyond the last measured point: continued as 1/t above the reference's floor, as the error of an unbiased estimator falls. Not measured.",
-  speedup: "Time to the chosen error of the mix compared with, over this mix's: 2× is twice as fast.",
+  speedup: "Time to the chosen error of the mix compared with, over this mix's: 2× is twice as fast. ≥ or ≤: the first measured point of one of the two "
+    + "is below that error already, so its time is a bound (of both: nothing is known). ≈: the time of one is extrapolated, not measured.",
   wall: "From submission to the last result, on the wall clock.",
   render_wall: "From the first leased tile to the last result, on the wall clock.",
   first_result: "From submission to the first accepted tile.",

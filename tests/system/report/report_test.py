@@ -123,6 +123,26 @@ class WithReference(Page):
         self.assertEqual(to(0.05, 0.05)["how"], "below the floor")
         self.assertEqual(to(2)["how"], "before")
 
+    def test_a_speed_up_is_no_more_certain_than_its_times(self):
+        measured, late, early = '{value: 8, how: "measured"}', '{value: 16, how: "extrapolated"}', '{value: 2, how: "before"}'
+        told = lambda base, mine: self.js(f"const c = speedUpCell({base}, {mine}); return [c.textContent, c.classList.contains('extrapolated')]")
+        self.assertEqual(told(measured, '{value: 4, how: "measured"}'), ["2×", False])
+        self.assertEqual(told(measured, early), ["≥ 4×", False])
+        self.assertEqual(told(early, measured), ["≤ 0.25×", False])
+        self.assertEqual(told(early, early), ["–", False])
+        self.assertEqual(told(measured, late), ["≈ 0.5×", True])
+        self.assertEqual(told(late, measured), ["≈ 2×", True])
+        self.assertEqual(told(late, early), ["≥ ≈ 8×", True])
+        self.assertEqual(told('{value: null, how: "below the floor"}', measured), ["–", False])
+        # An error that no curve has reached: every time is a continuation.
+        self.slide("#error", 0)
+        told = self.js("return [...document.querySelectorAll('#readout-table td:last-child')].map((n) => n.textContent)")
+        self.assertTrue(all(t == "–" or t.startswith("≈") for t in told), told)
+        # And one that all have from their first point on: nothing but bounds.
+        self.js("chosen.error = 1e9")
+        self.slide("#time", 200)
+        self.assertEqual(set(self.js("return [...document.querySelectorAll('#readout-table td:last-child')].map((n) => n.textContent)")), {"–"})
+
     def test_hiding_a_mix_removes_its_curve(self):
         self.click(".chip")
         self.assertEqual(self.js("return document.querySelectorAll('#chart .curve').length"), len(runs.MIXES) - 1)
