@@ -371,6 +371,11 @@ class WithoutReference(Page):
         self.assertEqual(modes, ["colour", "noise", "cost", "samples"])
         self.assertEqual(self.js("return document.querySelectorAll('#chart .curve').length"), len(runs.MIXES))
 
+    def test_regions_that_were_asked_for_want_a_reference(self):
+        self.assertRegex(self.browser.text("#regions"), "Asked for: shade.*--reference")
+        self.assertNotIn("None was asked for", self.browser.text("#regions"))
+        self.assertEqual(self.js("return document.querySelectorAll('.view')[0].querySelectorAll('.named rect').length"), 1)
+
     def test_the_intervals_of_estimates_are_those_of_blocks(self):
         self.assertIn("resampled $16 \\times 16$ blocks", self.js("return latexTable()"))
         self.assertEqual(self.js("return [...document.querySelectorAll('#table [data-meaning^=\"Error of this mix\"] .ci')].length"), 0)

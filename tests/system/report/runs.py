@@ -28,7 +28,7 @@ def with_reference(program, scene, folder):
 
 
 def without_reference(program, scene, folder):
-    return render(program, scene, folder / "alone", "--spp", 16)
+    return render(program, scene, folder / "alone", "--spp", 16, "--region", "shade=24,24,60,50")
 
 
 def large(program, scene, folder):
