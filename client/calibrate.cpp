@@ -62,6 +62,8 @@ absl::StatusOr<NullRun> null_run(const FetchedRun& run, const std::optional<Film
 
 /// The job of the first run: the mix twice.
 absl::StatusOr<Submission> prepare_null(CalibrateOptions& o) {
+  if (!o.job.regions.empty())
+    return invalid_input("--region: calibrate tells the noise of whole pictures; --crop renders a part");
   if (o.job.mixes.size() > 1) return invalid_input("--mix: calibrate renders one mix, twice; name one");
   if (o.job.budget.empty() && o.job.passes.empty() && o.job.target_error.empty())
     o.job.budget = kDefaultBudget;

@@ -190,6 +190,10 @@ void add_converge(CLI::App& app, Chosen& chosen) {
   command->add_option("--grid", options->grid, "Points along each edge of the light")
       ->type_name("N")
       ->capture_default_str();
+  for (const char* flag : {"--light", "--grid"})
+    command->get_option(flag)->needs(command->get_option("--integrand"));
+  for (const char* flag : {"--estimates", "--most"})
+    command->get_option(flag)->excludes(command->get_option("--integrand"));
   add_output_options(*command, options->output);
   command->get_option("--out")->description(
       "Folder for the table and the pictures (default ./penumbra-out/<scene>-converge)");

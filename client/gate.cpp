@@ -36,21 +36,34 @@ absl::StatusOr<GateOptions> gate_options(const GateCommand& c) {
   return options;
 }
 
-/// With a baseline nothing is rendered: options of render would be ignored.
-absl::Status check_nothing_to_render(const JobOptions& o) {
-  const bool given = !o.mixes.empty() || !o.regions.empty() || !o.budget.empty() || !o.passes.empty() ||
-                     !o.target_error.empty() || !o.sampler.empty() || !o.resolution.empty() ||
-                     !o.crop.empty() || !o.max_depth.empty() || !o.tile.empty() || !o.seed.empty() ||
-                     !o.reference.empty() || o.strict;
-  if (given) return invalid_input("--baseline compares finished runs: options of render go with --against");
+/// Whatever was typed that would be ignored is refused. Without --against nothing is rendered.
+absl::Status check_meaning(const CLI::App& command, const GateCommand& c) {
+  const auto given = [&](const std::vector<std::string>& flags) { return first_given(command, flags); };
+  if (!c.write_baseline.empty()) {
+    if (!given({"--baseline", "--against"}).empty())
+      return invalid_input("--write-baseline compares nothing: leave out --baseline and --against");
+    if (const std::string flag = given({"--tolerance", "--cpu-tolerance", "--noise", "--json"});
+        !flag.empty())
+      return invalid_input("{}: --write-baseline compares nothing; {} goes with --baseline", flag, flag);
+  }
+  if (!c.against.other.empty()) {
+    if (!c.baseline.empty()) return invalid_input("--baseline and --against exclude one another");
+    if (!c.noise.empty()) return invalid_input("--noise is for --baseline: --against measures its own noise");
+    if (!given({"--region"}).empty())
+      return invalid_input("--region: gate compares whole pictures; --crop renders a part");
+    return absl::OkStatus();
+  }
+  std::vector<std::string> rendering = job_flags();
+  rendering.insert(rendering.end(), {"--rounds", "--workers", "--threads"});
+  if (const std::string flag = given(rendering); !flag.empty())
+    return invalid_input("{}: {} takes finished runs; options of render go with --against", flag,
+                         c.write_baseline.empty() ? "--baseline" : "--write-baseline");
   return absl::OkStatus();
 }
 
 absl::StatusOr<GateResult> gate(GateCommand& c, std::stop_token stop) {
   ASSIGN_OR_RETURN(const GateOptions options, gate_options(c));
   if (!c.against.other.empty()) {
-    if (!c.baseline.empty()) return invalid_input("--baseline and --against exclude one another");
-    if (!c.noise.empty()) return invalid_input("--noise is for --baseline: --against measures its own noise");
     if (!c.rounds.empty()) {
       ASSIGN_OR_RETURN(const int64_t rounds, parse_whole("--rounds", c.rounds, 2, kMostRounds));
       c.against.rounds = static_cast<int>(rounds);
@@ -59,15 +72,12 @@ absl::StatusOr<GateResult> gate(GateCommand& c, std::stop_token stop) {
   }
   if (c.baseline.empty())
     return invalid_input("gate: nothing to compare with: give --baseline base.json or --against BUILD_DIR");
-  RETURN_IF_ERROR(check_nothing_to_render(c.against.job));
   ASSIGN_OR_RETURN(const Json now, read_json(c.against.job.scene));
   ASSIGN_OR_RETURN(const Json before, read_json(c.baseline));
   return gate_runs(now, c.against.job.scene, before, c.baseline, options);
 }
 
 absl::Status write_baseline(const GateCommand& c) {
-  if (!c.baseline.empty() || !c.against.other.empty())
-    return invalid_input("--write-baseline compares nothing: leave out --baseline and --against");
   ASSIGN_OR_RETURN(const Json run, read_json(c.against.job.scene));
   ASSIGN_OR_RETURN(const Json baseline, baseline_of(run, c.against.job.scene));
   return write_file_atomically(c.write_baseline, baseline.dump() + '\n');
@@ -112,6 +122,7 @@ void add_options(CLI::App& command, GateCommand& c) {
   command.add_flag("--json", c.json, "As JSON");
   command.add_flag("--quiet", c.against.quiet, "No progress");
   add_cluster_options(command, c.against.cluster);
+  refuse_empty_values(command);
 }
 
 }  // namespace
@@ -121,8 +132,9 @@ void add_gate(CLI::App& app, Chosen& chosen) {
       "gate", "Has error or CPU per pass become worse? Exit code 0: pass, 3: worse, 4: inconclusive");
   auto options = std::make_shared<GateCommand>();
   add_options(*command, *options);
-  command->callback([options, &chosen] {
-    chosen.run = [options](std::stop_token stop) {
+  command->callback([command, options, &chosen] {
+    chosen.run = [command, options](std::stop_token stop) {
+      if (const absl::Status status = check_meaning(*command, *options); !status.ok()) return tell(status);
       if (!options->write_baseline.empty()) return tell(write_baseline(*options));
       const absl::StatusOr<GateResult> result = gate(*options, stop);
       if (!result.ok()) return tell(result.status());

@@ -193,6 +193,8 @@ void add_inspect(CLI::App& app, Chosen& chosen) {
       ->needs(command->get_option("--costs"));
   command->add_flag("--quiet", options->quiet, "No progress");
   add_cluster_options(*command, options->cluster);
+  for (const char* flag : {"--workers", "--threads"})
+    command->get_option(flag)->needs(command->get_option("--costs"));
   command->callback([options, &chosen] {
     chosen.run = [options](std::stop_token stop) {
       absl::StatusOr<Inspection> inspection = inspect(options->scene);

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <map>
 
-#include "film/png.h"
 #include "film/atomic_file.h"
 #include "film/exr.h"
+#include "film/png.h"
 #include "proto/status.h"
 
 namespace penumbra {
@@ -38,6 +38,16 @@ std::array<uint8_t, 3> colour(double t) {
     out[c] = static_cast<uint8_t>(std::lround(kStops[stop][c] + (kStops[stop + 1][c] - kStops[stop][c]) *
                                                                     (at - static_cast<double>(stop))));
   return out;
+}
+
+/// A file's name as a relative URL: "#" of a repeated mix would begin a fragment.
+std::string url_of(const std::string& name) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-._~";
+  std::string url;
+  for (const char c : name)
+    url += kPlain.find(c) != std::string_view::npos ? std::string(1, c)
+                                                    : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  return url;
 }
 
 std::string page(const std::string& figures) {
@@ -132,10 +142,10 @@ absl::StatusOr<Json> write_integrands(const IntegrandJob& job, const std::vector
                     {"lit", f.lit},
                     {"variation", f.variation}});
     figures += fmt::format(
-        "<figure><img src=\"{0}.png\" alt=\"w·f/p of {1} in {2}\"><figcaption><b>{1}</b> in {2}<br>mean "
+        "<figure><img src=\"{0}\" alt=\"w·f/p of {1} in {2}\"><figcaption><b>{1}</b> in {2}<br>mean "
         "{3:.4g}, "
         "largest {4:.4g}, variation {5:.3g}</figcaption></figure>\n",
-        part.stem, part.strategy, part.mix, f.mean, f.largest, f.variation);
+        url_of(part.stem + ".png"), part.strategy, part.mix, f.mean, f.largest, f.variation);
   }
   RETURN_IF_ERROR(write_file_atomically(base / "integrand.html", page(figures)));
   return json;

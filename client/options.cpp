@@ -81,14 +81,6 @@ absl::Status set_image(const JobOptions& options, const SceneDefaults& scene, Jo
   return absl::OkStatus();
 }
 
-/// Empty text means «not given» in the structures here; typed, as a script's unset variable, it is a fault.
-void refuse_empty_values(CLI::App& app) {
-  for (CLI::Option* const option :
-       app.get_options([](const CLI::Option* o) { return o->get_items_expected() > 0; }))
-    option->check(
-        [](const std::string& value) { return std::string(value.empty() ? "must not be empty" : ""); });
-}
-
 }  // namespace
 
 void add_server_options(CLI::App& app, ServerOptions& o, bool from_environment) {
@@ -99,6 +91,10 @@ void add_server_options(CLI::App& app, ServerOptions& o, bool from_environment) 
   app.add_option("--tls-ca", o.credentials.ca, "Authority that signed the server's certificate (PEM)")
       ->type_name("FILE");
   app.add_option("--token-file", o.credentials.token_file, "File with a bearer token")->type_name("FILE");
+  // Not with the environment's: whoever sets no address there is told that one is missing.
+  if (from_environment) return;
+  for (const char* flag : {"--tls-cert", "--tls-key", "--tls-ca", "--token-file"})
+    app.get_option(flag)->needs(server);
 }
 
 void add_cluster_options(CLI::App& app, ClusterOptions& o) {
@@ -118,6 +114,30 @@ absl::StatusOr<ClusterSize> cluster_size(const ClusterOptions& o, int cores) {
     size.threads = static_cast<int>(threads);
   }
   return size;
+}
+
+void refuse_empty_values(CLI::App& app) {
+  for (CLI::Option* const option :
+       app.get_options([](const CLI::Option* o) { return o->get_items_expected() > 0; }))
+    option->check(
+        [](const std::string& value) { return std::string(value.empty() ? "must not be empty" : ""); });
+}
+
+std::string first_given(const CLI::App& app, const std::vector<std::string>& flags) {
+  const auto given =
+      std::find_if(flags.begin(), flags.end(), [&](const std::string& flag) { return app.count(flag) > 0; });
+  return given == flags.end() ? "" : *given;
+}
+
+std::vector<std::string> job_flags() {
+  // Asked of the options themselves, so that none is forgotten when one is added.
+  CLI::App app;
+  JobOptions unused;
+  add_job_options(app, unused);
+  std::vector<std::string> flags;
+  for (const CLI::Option* option : app.get_options([](const CLI::Option* o) { return !o->get_positional(); }))
+    if (option->get_name() != "--help") flags.push_back(option->get_name());
+  return flags;
 }
 
 void add_job_options(CLI::App& app, JobOptions& o) {

@@ -16,7 +16,8 @@ struct ServerOptions {
   std::string address;
   Credentials credentials;
 };
-/// `from_environment`: PENUMBRA_SERVER stands in for --server.
+/// `from_environment`: PENUMBRA_SERVER stands in for --server. Where a local cluster stands in for it
+/// instead, certificates and a token without --server are refused: nobody would ask for them.
 void add_server_options(CLI::App& app, ServerOptions& options, bool from_environment);
 
 /// The local cluster of render and replay, when no --server is given.
@@ -42,6 +43,14 @@ struct JobOptions {
   bool strict = false;
 };
 void add_job_options(CLI::App& app, JobOptions& options);
+
+/// The first of these options that was typed, or "": for those that would have no meaning beside others.
+std::string first_given(const CLI::App& app, const std::vector<std::string>& flags);
+/// The options of add_job_options.
+std::vector<std::string> job_flags();
+
+/// Empty text means «not given» in the structures here; typed, as a script's unset variable, it is a fault.
+void refuse_empty_values(CLI::App& app);
 
 /// The job for this scene; `bundle` is left empty. InvalidArgument names the flag at fault.
 absl::StatusOr<JobSpec> make_job(const JobOptions& options, const SceneDefaults& scene);

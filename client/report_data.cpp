@@ -44,6 +44,15 @@ absl::StatusOr<FilmImage> read_part(const std::string& path, const std::optional
   return cut(image, *window);
 }
 
+/// The run's reference over `window`; nothing, and a note, if it cannot be read.
+std::optional<FilmImage> reference_over(const Json& run, const PixelRect& window, Json& notes) {
+  if (!run.contains("reference") || !run["reference"].is_string()) return std::nullopt;
+  absl::StatusOr<FilmImage> image = read_part(run["reference"].get<std::string>(), window);
+  if (image.ok()) return *std::move(image);
+  notes.push_back("reference: " + message_of(image.status()));
+  return std::nullopt;
+}
+
 }  // namespace
 
 absl::StatusOr<Json> report_data(const std::string& folder) {
@@ -52,15 +61,18 @@ absl::StatusOr<Json> report_data(const std::string& folder) {
   if (!run.is_object() || run.value("schema", 0) != 1 || !run.contains("mixes") || !run["mixes"].is_array())
     return invalid_input("{}: not a run.json of schema 1", (base / "run.json").string());
   Json images = Json::array(), notes = Json::array();
+  // Of the first image that is there: all others and the reference are shown over it.
   std::optional<PixelRect> window;
+  std::optional<FilmImage> reference;
   try {
     for (const Json& mix : run["mixes"]) {
       const absl::StatusOr<FilmImage> image = read_part(base / mix.at("image").get<std::string>(), window);
-      images.push_back(image.ok() ? image_json(*image) : Json(nullptr));
-      if (image.ok())
+      if (image.ok() && !window) {
         window = image->window;
-      else
-        notes.push_back(message_of(image.status()));
+        reference = reference_over(run, *window, notes);
+      }
+      images.push_back(image.ok() ? image_json(*image, reference ? &*reference : nullptr) : Json(nullptr));
+      if (!image.ok()) notes.push_back(message_of(image.status()));
     }
     std::vector<std::optional<ExrBins>> bins(run["mixes"].size());
     const bool transient = run.contains("transient") && !run["transient"].is_null();
@@ -71,17 +83,9 @@ absl::StatusOr<Json> report_data(const std::string& folder) {
       else
         notes.push_back(message_of(read.status()));
     }
-    Json reference;
-    if (window && run.contains("reference") && run["reference"].is_string()) {
-      const absl::StatusOr<FilmImage> image = read_part(run["reference"].get<std::string>(), window);
-      if (image.ok())
-        reference = image_json(*image);
-      else
-        notes.push_back("reference: " + message_of(image.status()));
-    }
     return Json{{"run", std::move(run)},
                 {"images", std::move(images)},
-                {"reference", std::move(reference)},
+                {"reference", reference ? image_json(*reference) : Json(nullptr)},
                 {"flipbook", flipbook_json(bins)},
                 {"notes", std::move(notes)}};
   } catch (const Json::exception& fault) {

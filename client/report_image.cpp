@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "film/metrics.h"
 #include "film/own_error_pixels.h"
 #include "proto/status.h"
 
@@ -17,6 +18,7 @@ namespace {
 constexpr int64_t kMostPixels = int64_t{1} << 20;
 constexpr int kHalfBits = 10;  // stored bits of a half's significand
 constexpr int kHeatBits = 7;   // of a false colour's: its table has 256 entries
+constexpr double kErrorUnit = 1.0 / 4096;
 
 /// How an image is made smaller: means over scale × scale pixels; those at the right and bottom edge over
 /// what there is.
@@ -50,13 +52,13 @@ struct Reduction {
   }
 };
 
-/// The power of two, at least 1, in whose multiples every finite value is a half.
-double unit_of(const std::vector<std::vector<float>>& planes) {
+/// The power of two, at least `least`, in whose multiples every finite value is a half.
+double unit_of(const std::vector<std::vector<float>>& planes, double least) {
   double most = 0;
   for (const std::vector<float>& plane : planes)
     for (const float v : plane)
       if (std::isfinite(v)) most = std::max(most, std::abs(double{v}));
-  double unit = 1;
+  double unit = least;
   while (most / unit > HALF_MAX) unit *= 2;
   return unit;
 }
@@ -70,6 +72,16 @@ uint16_t half_bits(double v, int bits) {
   return static_cast<uint16_t>((rounded & 0x7fff) >= 0x7c00 ? exact & ~(step - 1) : rounded);
 }
 
+/// What relMSE averages, of pixel number p of both windows.
+double relative_error(const FilmImage& image, const FilmImage& reference, size_t p) {
+  double sum = 0;
+  for (size_t i = 3 * p; i < 3 * p + 3; ++i) {
+    const double r = reference.rgb[i], d = image.rgb[i] - r;
+    sum += d * d / (r * r + kRelMseEpsilon);
+  }
+  return sum / 3;
+}
+
 std::string deflate(const std::string& bytes) {
   uLongf size = compressBound(bytes.size());
   std::string out(size, '\0');
@@ -81,8 +93,8 @@ std::string deflate(const std::string& bytes) {
 }
 
 /// {"unit","half"} of planes of equal size.
-Json packed(const std::vector<std::vector<float>>& planes, int bits = kHalfBits) {
-  const double unit = unit_of(planes);
+Json packed(const std::vector<std::vector<float>>& planes, int bits = kHalfBits, double least_unit = 1) {
+  const double unit = unit_of(planes, least_unit);
   const size_t pixels = planes[0].size();
   std::string bytes(2 * planes.size() * pixels, '\0');
   for (size_t c = 0; c < planes.size(); ++c)
@@ -109,7 +121,7 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-Json image_json(const FilmImage& image) {
+Json image_json(const FilmImage& image, const FilmImage* reference) {
   const Reduction reduce(image.window);
   std::vector<std::vector<float>> rgb;
   for (size_t c = 0; c < 3; ++c) rgb.push_back(reduce.plane([&](size_t p) { return image.rgb[3 * p + c]; }));
@@ -119,6 +131,8 @@ Json image_json(const FilmImage& image) {
   json["scale"] = reduce.scale;
   json["x0"] = image.window.x0;
   json["y0"] = image.window.y0;
+  json["x1"] = image.window.x1;
+  json["y1"] = image.window.y1;
   Json layers = Json::object();
   if (!image.cost.empty())
     layers["cost"] = packed({reduce.plane([&](size_t p) { return image.cost[p]; })}, kHeatBits);
@@ -127,6 +141,12 @@ Json image_json(const FilmImage& image) {
   if (!image.variance.empty()) {
     const std::vector<float> noise = own_error_pixels(image);
     layers["noise"] = packed({reduce.plane([&](size_t p) { return noise[p]; })}, kHeatBits);
+  }
+  if (reference != nullptr && reduce.scale > 1) {
+    PENUMBRA_CHECK(reference->window == image.window);
+    const auto error = [&](size_t p) { return relative_error(image, *reference, p); };
+    // Tabulated, not only looked at: all bits, and small errors are no subnormal halves.
+    layers["error"] = packed({reduce.plane(error)}, kHalfBits, kErrorUnit);
   }
   json["layers"] = std::move(layers);
   return json;

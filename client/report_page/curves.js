@@ -61,3 +61,14 @@ function timeTo(curve, error, floor = 0) {
   if (curve.filter((p) => number(p.lo)).length < 2) return { ...mid, lo: null, hi: null };  // a bar is no band
   return { ...mid, lo: edgeReaches(curve, "lo", error, floor).value, hi: edgeReaches(curve, "hi", error, floor).value };
 }
+
+/**
+ * How much sooner `mine` is there than `base`, both from timeTo(): {value, bound, how}. A curve that begins below the error
+ * gives only a latest time, so the ratio is at least ("≥ ") or at most ("≤ ") this, and of two such nothing is known.
+ */
+function speedUp(base, mine) {
+  const early = (time) => time.how === "before";
+  if (!number(base.value) || !number(mine.value) || (early(base) && early(mine))) return { value: null, bound: "", how: "none" };
+  return { value: base.value / mine.value, bound: early(mine) ? "≥ " : early(base) ? "≤ " : "",
+    how: base.how === "extrapolated" || mine.how === "extrapolated" ? "extrapolated" : "measured" };
+}

@@ -21,6 +21,19 @@ const bestMix = (() => {
   return measured.length > 1 ? measured.reduce((a, b) => (errorOf(b) < errorOf(a) ? b : a)) : null;
 })();
 
+/**
+ * 95 % interval of the ratio of two mixes' errors. Mixes share no samples and both intervals are symmetric in the logarithm
+ * (film/metrics.h), so their half widths add in squares there. Null without both. Those of the run's own estimate are about
+ * the picture's blocks, which all mixes share, and not about seeds: of them nothing can be made here.
+ */
+function ratioInterval(mix, other) {
+  if (!errorKind || errorKind.estimated) return null;
+  const half = (ci) => (Array.isArray(ci) && ci[0] > 0 && number(ci[1]) ? Math.log(ci[1] / ci[0]) / 2 : NaN);
+  const width = Math.hypot(half(errorIntervalOf(mix)), half(errorIntervalOf(other)));
+  const ratio = errorOf(mix) / errorOf(other);
+  return number(width) && ratio > 0 ? [ratio * Math.exp(-width), ratio * Math.exp(width)] : null;
+}
+
 /** The relMSE that a perfect image would show against this reference. */
 const referenceFloor = (() => {
   const floors = run.mixes.map((m) => m.reference_floor).filter((v) => number(v) && v > 0);

@@ -91,11 +91,13 @@ function latexTable() {
       Array.isArray(ci) ? `[${latexNumber(ci[0])}, ${latexNumber(ci[1])}]` : "--",
       ...regions.map((r) => latexNumber(((m.regions || {})[r] || {}).relmse))].join(" & ");
   });
+  const behind = errorKind && errorKind.estimated ? "from resampled $16 \\times 16$ blocks"
+    : "for other seeds, from the scatter within cells of $2 \\times 2$ pixels";
   return [
     "% Needs \\usepackage{booktabs,amsmath}. Made by Penumbra's report.html from run.json.",
     "\\begin{table}", "  \\centering",
     `  \\caption{${latexText(baseName(run.scene))}, ${run.resolution[0]}$\\times$${run.resolution[1]}, ${latexText(budgetText(run.budget))}.`
-      + ` relMSE with $\\varepsilon = 10^{-2}$; intervals from resampled $16 \\times 16$ blocks.}`,
+      + ` relMSE with $\\varepsilon = 10^{-2}$; intervals ${behind}.}`,
     `  \\begin{tabular}{l${"r".repeat(head.length - 1)}}`, "    \\toprule", `    ${head.join(" & ")} \\\\`, "    \\midrule",
     ...rows.map((row) => `    ${row} \\\\`), "    \\bottomrule", "  \\end{tabular}", "\\end{table}", ""].join("\n");
 }

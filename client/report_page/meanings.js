@@ -9,19 +9,22 @@ const meanings = {
   relmse: "Relative mean squared error: mean over pixels and channels of (I−R)²/(R²+0.01), I the image, R the reference. Raw: the reference's floor is not subtracted.",
   relmse_ci: "95 % interval: what relMSE other seeds would give. From the scatter of the errors within cells of 2×2 pixels, which share no samples.",
   estimated_relmse: "What relMSE the run itself expects, for want of a reference: mean over pixels and channels of v/(S²+0.01), v the variance of the mean between "
-    + "independent groups of passes, S the image averaged over 5×5 pixels. Blind to bias and to bright paths that no sample found.",
+    + "independent groups of passes, S the image averaged over 5×5 pixels. Blind to bias and to bright paths that no sample found. Its interval, from resampled 16×16 blocks, "
+    + "counts how unevenly the error lies in the picture too.",
   trimmed_relmse: "relMSE without the worst 0.1 % of pixels: the error without its fireflies.",
   mse: "Mean squared error: mean over pixels and channels of (I−R)².",
   reference_floor: "The relMSE that a perfect image would show, because the reference itself is noisy: mean of s²/(R²+0.01), s its standard error.",
   efficiency: "Error times CPU seconds: less is better. Constant in time for an estimator whose error falls as 1/t.",
-  ratio: "Error of this mix over that of the best. Its interval resamples the same blocks in both images, so that what makes a block difficult cancels: 1 inside it means that this run cannot tell the two apart.",
+  ratio: "Error of this mix over that of the best. With a reference its 95 % interval: what ratio other seeds would give. Mixes share no samples, "
+    + "so the intervals of both errors add, in squares and on a logarithmic scale. 1 inside it: this run cannot tell which of the two is better.",
   rays: "Camera, specular and shadow rays per CPU second.",
   line_queries: "Exact visible-interval queries per CPU second.",
   non_finite: "Samples that were not finite numbers and were refused at the film's door. Any is a fault of the renderer.",
   error_at: "The error at the chosen time, read off the curve (straight between measured points on both logarithmic axes), with its 95 % band.",
   time_to: "CPU seconds until the curve first falls to the chosen error. The range is where the 95 % band's two edges do.",
   extrapolated: "Beyond the last measured point: continued as 1/t above the reference's floor, as the error of an unbiased estimator falls. Not measured.",
-  speedup: "Time to the chosen error of the mix compared with, over this mix's: 2× is twice as fast.",
+  speedup: "Time to the chosen error of the mix compared with, over this mix's: 2× is twice as fast. ≥ or ≤: the first measured point of one of the two "
+    + "is below that error already, so its time is a bound (of both: nothing is known). ≈: the time of one is extrapolated, not measured.",
   wall: "From submission to the last result, on the wall clock.",
   render_wall: "From the first leased tile to the last result, on the wall clock.",
   first_result: "From submission to the first accepted tile.",
@@ -36,7 +39,8 @@ const meanings = {
   seed: "Random numbers are keyed by it: the same seed, plan and program give the same bits.",
   threads: "Threads that render.",
   region: "relMSE of the region's pixels alone, with its 95 % interval.",
-  selection: "Computed on this page from the images it holds (half floats): the mean over the drawn pixels of the relative squared error.",
+  selection: "Computed on this page from the images it holds (half floats): the mean over the drawn pixels of the relative squared error, "
+    + "without a reference of what the run itself expects of it. Errors of images shown smaller were taken at full resolution.",
 };
 
 /** Gives a node its meaning: a key of `meanings`, or text. */

@@ -19,6 +19,12 @@ function table(columns, rows, best = -1) {
     el("tbody", {}, ...rows.map((cells, i) => el("tr", i === best ? { class: "best" } : {}, ...cells)))));
 }
 
+/** Error over the least error. */
+function timesLeast(m) {
+  if (!bestMix || !number(errorOf(m))) return "–";
+  return m === bestMix ? "1" : significant(errorOf(m) / errorOf(bestMix));
+}
+
 function mixTable() {
   const withReference = errorKind && !errorKind.estimated;
   const rate = (count, m) => (count && m.cpu_seconds > 0 ? significant(count / m.cpu_seconds) : "–");
@@ -28,7 +34,7 @@ function mixTable() {
     ["CPU s", "cpu_seconds", (m) => significant(m.cpu_seconds, 4)],
     ["spent / budget", "budget_ratio", (m) => (number(m.budget_ratio) ? m.budget_ratio.toFixed(3) : "–")],
     errorKind ? [errorKind.estimated ? "own estimate of relMSE" : "relMSE", errorKind.meaning, (m) => significant(errorOf(m)), errorIntervalOf] : null,
-    errorKind ? ["× least", "ratio", () => "…"] : null,
+    errorKind ? ["× least", "ratio", timesLeast, (m) => (m === bestMix || !bestMix ? null : ratioInterval(m, bestMix))] : null,
     withReference ? ["trimmed", "trimmed_relmse", (m) => significant(m.trimmed_relmse)] : null,
     withReference ? ["floor", "reference_floor", (m) => significant(m.reference_floor, 2)] : null,
     withReference && run.mixes.some((m) => number(m.estimated_relmse)) ? ["own estimate", "estimated_relmse", (m) => significant(m.estimated_relmse)] : null,
@@ -38,29 +44,14 @@ function mixTable() {
   ].filter(Boolean);
   const rows = run.mixes.map((m, i) => columns.map(([name, meaning, value, ci]) => {
     if (!value) return mixCell(m, i);
-    const node = cell(value(m), meaning, ci ? interval(ci(m)) : null);
-    if (meaning === "ratio") node.classList.add("ratio-cell");
-    return node;
+    return cell(value(m), meaning, ci ? interval(ci(m)) : null);
   }));
   const box = document.getElementById("table");
   box.append(table(columns, rows, run.mixes.indexOf(bestMix)));
-  fillRatios(box, null);
   const substituted = run.mixes.flatMap((m) => (m.substitutions || []).map((s) => `${m.mix}: ${s}`));
   if (substituted.length) box.append(el("h3", {}, "Strategies that do not fit every light"),
     el("ul", { class: "plain" }, ...substituted.map((s) => el("li", {}, s))));
   document.getElementById("table-tools").append(
     saveButton("CSV", fileName("mixes", "csv"), "text/csv", () => csvText(mixRows())),
     saveButton("LaTeX", fileName("mixes", "tex"), "application/x-tex", latexTable));
-}
-
-/** Error over the least error; with its interval once `paired(i)` can be taken from the images. */
-function fillRatios(box, paired) {
-  const cells = box.querySelectorAll(".ratio-cell"), best = run.mixes.indexOf(bestMix);
-  run.mixes.forEach((m, i) => {
-    if (!cells[i]) return;
-    if (best < 0 || !number(errorOf(m))) { cells[i].textContent = "–"; return; }
-    if (i === best) { cells[i].textContent = "1"; return; }
-    const ci = paired ? paired(i, best) : null;
-    cells[i].replaceChildren(significant(errorOf(m) / errorOf(bestMix)), ...(ci ? [el("span", { class: "ci" }, interval(ci))] : []));
-  });
 }

@@ -23,10 +23,11 @@ async function decodePlanes(packed, count, n) {
   });
 }
 
-/** {width, height, scale, x0, y0, planes: [R, G, B], cost?, samples?, noise?}; planes are row-major. */
+/** {width, height, scale, x0, y0, x1, y1, planes: [R, G, B], cost?, samples?, noise?, error?}; planes are row-major. */
 async function decodeImage(image) {
   const n = image.width * image.height;
-  const out = { width: image.width, height: image.height, scale: image.scale, x0: image.x0, y0: image.y0 };
+  const out = { width: image.width, height: image.height, scale: image.scale };
+  for (const edge of ["x0", "y0", "x1", "y1"]) out[edge] = image[edge];
   out.planes = await decodePlanes(image, 3, n);
   for (const [name, layer] of Object.entries(image.layers || {})) [out[name]] = await decodePlanes(layer, 1, n);
   return out;
@@ -42,49 +43,28 @@ function pixelError(image, reference, i) {
   return sum / 3;
 }
 
-/** A plane of pixelError, made once per image. */
+/**
+ * A plane of pixelError, made once per image. One shown smaller brings its own, averaged after the error was taken at
+ * full resolution: averaged colours have scale² less noise.
+ */
 function errorPlane(image, reference) {
   if (!image.error) image.error = Float32Array.from({ length: image.width * image.height }, (_, i) => pixelError(image, reference, i));
   return image.error;
 }
 
-/** Mean of a plane over the pixels [x0,x1) × [y0,y1) of the full image. */
+/**
+ * Mean of a plane over the pixels [x0,x1) × [y0,y1) of the full image. A pixel of the plane counts for as many as it is the
+ * mean of: at the right and bottom edge fewer than elsewhere.
+ */
 function meanOver(image, plane, [x0, y0, x1, y1]) {
   const s = image.scale, left = Math.floor((x0 - image.x0) / s), right = Math.ceil((x1 - image.x0) / s);
+  const across = (i, origin, end) => Math.min(s, end - origin - i * s);
   let sum = 0, count = 0;
   for (let y = Math.floor((y0 - image.y0) / s); y < Math.ceil((y1 - image.y0) / s); ++y)
-    for (let x = left; x < right; ++x, ++count) sum += plane[y * image.width + x];
-  return count ? sum / count : NaN;
-}
-
-/** Sums of a plane over 16×16 blocks of pixels. */
-function blockSums(image, plane) {
-  const columns = Math.ceil(image.width / 16), sums = new Float64Array(columns * Math.ceil(image.height / 16));
-  for (let y = 0; y < image.height; ++y)
-    for (let x = 0; x < image.width; ++x) sums[(y >> 4) * columns + (x >> 4)] += plane[y * image.width + x];
-  return sums;
-}
-
-/** 95 % interval of the ratio of two images' errors, the same blocks drawn for both (2,000 times, always the same draws). */
-function pairedInterval(a, b) {
-  let state = 0x70656e75;
-  const random = () => {  // mulberry32
-    state = (state + 0x6d2b79f5) | 0;
-    let t = Math.imul(state ^ (state >>> 15), 1 | state);
-    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
-    return ((t ^ (t >>> 14)) >>> 0) / 4294967296;
-  };
-  if (a.length < 2) return null;
-  const ratios = new Float64Array(2000);
-  for (let r = 0; r < ratios.length; ++r) {
-    let above = 0, below = 0;
-    for (let i = 0; i < a.length; ++i) {
-      const k = Math.floor(random() * a.length);
-      above += a[k];
-      below += b[k];
+    for (let x = left; x < right; ++x) {
+      const pixels = across(x, image.x0, image.x1) * across(y, image.y0, image.y1);
+      sum += pixels * plane[y * image.width + x];
+      count += pixels;
     }
-    ratios[r] = above / below;
-  }
-  ratios.sort();
-  return Number.isFinite(ratios[ratios.length - 1]) ? [ratios[50], ratios[1949]] : null;
+  return count ? sum / count : NaN;
 }

@@ -22,17 +22,24 @@ function readCell(read, show, meaning) {
   return node;
 }
 
+function speedUpCell(base, mine) {
+  const { value, bound, how } = speedUp(base, mine), guessed = how === "extrapolated";
+  const node = cell(number(value) ? `${bound}${guessed ? howTold.extrapolated : ""}${significant(value)}×` : "–", "speedup");
+  if (guessed) node.classList.add("extrapolated");
+  return node;
+}
+
 function readoutTable() {
   const floor = errorKind.estimated ? 0 : referenceFloor || 0;
   const base = series.find((s) => s.index === chosen.compared) || series[0];
-  const baseTime = timeTo(base.points, chosen.error, floor).value;
+  const baseTime = timeTo(base.points, chosen.error, floor);
   const columns = [["mix", "mix"], [`${errorKind.estimated ? "own estimate" : "relMSE"} at ${seconds(chosen.time)}`, "error_at"],
     [`CPU s to ${significant(chosen.error)}`, "time_to"], ["speed-up", "speedup"]];
   const rows = series.map((s) => {
     const time = timeTo(s.points, chosen.error, floor);
     return [mixCell(s.mix, s.index), readCell(errorAt(s.points, chosen.time, floor), (v) => significant(v), "error_at"),
       readCell(time, (v) => significant(v), "time_to"),
-      cell(number(baseTime) && number(time.value) ? `${significant(baseTime / time.value)}×` : "–", "speedup")];
+      speedUpCell(baseTime, time)];
   });
   return table(columns, rows);
 }

@@ -1,7 +1,8 @@
 // Regions: those the run was asked about, and one drawn on the page. Drawn over every image, and tabulated.
 const regionNames = [...new Set(run.mixes.flatMap((m) => Object.keys(m.regions || {})))];
-const regionRects = Object.fromEntries(regionNames.map((name) =>
-  [name, (run.mixes.find((m) => (m.regions || {})[name]).regions[name] || {}).rect]));
+/** Without a reference a run has no figures of the regions it was asked about; where they are, its spec says. */
+const regionRects = { ...(run.spec || {}).regions, ...Object.fromEntries(regionNames.map((name) =>
+  [name, (run.mixes.find((m) => (m.regions || {})[name]).regions[name] || {}).rect])) };
 
 function drawRect(s, [x0, y0, x1, y1], name, css) {
   const at = (v, origin) => (v - origin) / s.image.scale;
@@ -35,7 +36,9 @@ function drawRegions(s) {
 /** Shift + drag (or the button, then a drag) draws a region. */
 function connectSelection(s) {
   let start = null;
-  const corner = ([x, y], far) => [s.image.x0 + (x + far) * s.image.scale, s.image.y0 + (y + far) * s.image.scale];
+  // The last pixels of an image shown smaller may stand for fewer than the others.
+  const corner = ([x, y], far) => [Math.min(s.image.x1, s.image.x0 + (x + far) * s.image.scale),
+    Math.min(s.image.y1, s.image.y0 + (y + far) * s.image.scale)];
   s.view.addEventListener("pointerdown", (event) => {
     if (!viewer.drawing && !event.shiftKey) return;
     start = pixelAt(s, event);
@@ -70,7 +73,7 @@ function regionControls() {
   return button;
 }
 
-/** What the drawn region has: relMSE by the page's own images, or else the mean of the own noise. */
+/** What the drawn region has: relMSE by the page's own planes, or else the mean of the own noise. */
 function selectionValue(i) {
   const s = viewer.shown.find((one) => one.index === i);
   if (!s) return null;
@@ -80,8 +83,12 @@ function selectionValue(i) {
 
 function regionTable() {
   const box = document.getElementById("regions");
+  const unknown = Object.keys(regionRects).filter((name) => !regionNames.includes(name));
+  const notes = unknown.length ? [el("p", { class: "note", id: "regions-unknown" },
+    `Asked for: ${unknown.join(", ")}. The error of regions needs a reference: render again with --reference REF.exr.`)] : [];
   if (!regionNames.length && !viewer.selection) {
-    box.replaceChildren(el("p", { class: "note" }, "None was asked for (--region NAME=X0,Y0,X1,Y1). Draw one over an image to see its error."));
+    box.replaceChildren(...notes, el("p", { class: "note" }, notes.length ? "Draw one over an image to see what the run expects of its error."
+      : "None was asked for (--region NAME=X0,Y0,X1,Y1). Draw one over an image to see its error."));
     return;
   }
   const columns = [["mix", "mix"], ...regionNames.map((n) => [n, `${meanings.region} Pixels ${(regionRects[n] || []).join(",")}.`]),
@@ -90,7 +97,7 @@ function regionTable() {
     const r = (m.regions || {})[n];
     return r ? cell(significant(r.relmse), "region", interval(r.relmse_ci)) : cell("–");
   }), ...(viewer.selection ? [cell(significant(selectionValue(i)), "selection")] : [])]);
-  box.replaceChildren(table(columns, rows));
+  box.replaceChildren(...notes, table(columns, rows));
   if (viewer.selection) box.append(el("p", { class: "note", id: "selection-flag" }, "The drawn region as an option: ",
     el("code", {}, `--region drawn=${viewer.selection.join(",")}`)));
 }

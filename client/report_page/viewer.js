@@ -144,5 +144,6 @@ async function images() {
   placeAll();
   const scale = viewer.shown[0].image.scale;
   if (scale > 1) box.after(el("p", { class: "note" },
-    `Shown at 1/${scale} of the resolution (means of ${scale} × ${scale} pixels); the EXR files have all of it.`));
+    `Shown at 1/${scale} of the resolution (means of ${scale} × ${scale} pixels; error and own noise are means of what single `
+      + "pixels have); the EXR files have all of it."));
 }

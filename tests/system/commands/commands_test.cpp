@@ -183,6 +183,39 @@ TEST_F(Commands, GateRefusesBadUsage) {
   refused(kSmall + "--against /nowhere --spp 1 --mix sa:1 --reference ref.exr", "--against: /nowhere");
 }
 
+TEST_F(Commands, OptionsThatWouldBeIgnoredAreRefused) {
+  const auto refused = [&](const std::string& words, const std::string& flag) {
+    const Said said = run(words);
+    EXPECT_EQ(said.code, 2) << words << "\n" << said.out;
+    EXPECT_THAT(said.out, HasSubstr(flag)) << words;
+  };
+  // Finished runs (which are not there: told before they are looked for) take nothing that renders.
+  for (const char* words : {"--camera-grid 4", "--transient 0,1,4", "--rounds 3", "--workers 1",
+                            "--threads 1", "--crop 0,0,1,1", "--strict"}) {
+    const std::string flag = std::string(words).substr(0, std::string(words).find(' '));
+    refused(std::string("gate run.json --baseline base.json ") + words, "penumbra: " + flag + ":");
+    refused(std::string("gate run.json --write-baseline base.json ") + words, "penumbra: " + flag + ":");
+  }
+  for (const char* words : {"--tolerance 5%", "--cpu-tolerance 5%", "--noise n.json", "--json"})
+    refused(std::string("gate run.json --write-baseline base.json ") + words,
+            std::string(words).substr(0, std::string(words).find(' ')));
+  refused("gate run.json --write-baseline base.json --baseline old.json", "--baseline");
+  refused("gate run.json --baseline base.json --noise ''", "--noise");
+  refused("gate " + kSmall + "--against /nowhere --reference ref.exr --region a=0,0,8,8", "--region");
+  refused("calibrate " + kSmall + "--mix sa:1 --region a=0,0,8,8", "--region");
+  // A local cluster has no certificates, and what is only looked at no workers.
+  for (const char* command : {"render ", "calibrate ", "converge --pixel 1,1 "})
+    refused(command + kSmall + "--token-file none", "--token-file");
+  refused("replay run.json --tls-ca none", "--tls-ca");
+  for (const char* flag : {"--workers", "--threads"}) refused("inspect " + kScene + " " + flag + " 1", flag);
+  EXPECT_EQ(run("inspect " + kScene + " --quiet").code, 0);
+  const std::string converge = "converge " + kScene + " --pixel 1,1 ";
+  refused(converge + "--light 0", "--light");
+  refused(converge + "--grid 8", "--grid");
+  refused(converge + "--integrand --estimates 1000", "--estimates");
+  refused(converge + "--integrand --most 16", "--most");
+}
+
 TEST_F(Commands, GateAgainstTheSameBuildPasses) {
   render_reference();
   const Said said = run("gate " + kSmall + "--against '" PENUMBRA_BUILD "' --rounds 2 --spp 16 --mix sa:1 " +

@@ -5,6 +5,7 @@
 import csv
 import io
 import json
+import math
 import pathlib
 import re
 import sys
@@ -21,11 +22,12 @@ SVG = "{http://www.w3.org/2000/svg}"
 
 
 def setUpModule():
-    global FOLDER, RUN, ALONE, TRANSIENT
+    global FOLDER, RUN, ALONE, TRANSIENT, LARGE
     FOLDER = tempfile.TemporaryDirectory(prefix="penumbra_report_")
     RUN = runs.with_reference(PROGRAM, SCENE, pathlib.Path(FOLDER.name))
     ALONE = runs.without_reference(PROGRAM, SCENE, pathlib.Path(FOLDER.name))
     TRANSIENT = runs.transient(PROGRAM, SCENE, pathlib.Path(FOLDER.name))
+    LARGE = runs.large(PROGRAM, SCENE, pathlib.Path(FOLDER.name))
 
 
 def tearDownModule():
@@ -121,6 +123,26 @@ class WithReference(Page):
         self.assertEqual(to(0.05, 0.05)["how"], "below the floor")
         self.assertEqual(to(2)["how"], "before")
 
+    def test_a_speed_up_is_no_more_certain_than_its_times(self):
+        measured, late, early = '{value: 8, how: "measured"}', '{value: 16, how: "extrapolated"}', '{value: 2, how: "before"}'
+        told = lambda base, mine: self.js(f"const c = speedUpCell({base}, {mine}); return [c.textContent, c.classList.contains('extrapolated')]")
+        self.assertEqual(told(measured, '{value: 4, how: "measured"}'), ["2×", False])
+        self.assertEqual(told(measured, early), ["≥ 4×", False])
+        self.assertEqual(told(early, measured), ["≤ 0.25×", False])
+        self.assertEqual(told(early, early), ["–", False])
+        self.assertEqual(told(measured, late), ["≈ 0.5×", True])
+        self.assertEqual(told(late, measured), ["≈ 2×", True])
+        self.assertEqual(told(late, early), ["≥ ≈ 8×", True])
+        self.assertEqual(told('{value: null, how: "below the floor"}', measured), ["–", False])
+        # An error that no curve has reached: every time is a continuation.
+        self.slide("#error", 0)
+        told = self.js("return [...document.querySelectorAll('#readout-table td:last-child')].map((n) => n.textContent)")
+        self.assertTrue(all(t == "–" or t.startswith("≈") for t in told), told)
+        # And one that all have from their first point on: nothing but bounds.
+        self.js("chosen.error = 1e9")
+        self.slide("#time", 200)
+        self.assertEqual(set(self.js("return [...document.querySelectorAll('#readout-table td:last-child')].map((n) => n.textContent)")), {"–"})
+
     def test_hiding_a_mix_removes_its_curve(self):
         self.click(".chip")
         self.assertEqual(self.js("return document.querySelectorAll('#chart .curve').length"), len(runs.MIXES) - 1)
@@ -214,11 +236,21 @@ class WithReference(Page):
         self.assertEqual(self.js("return document.querySelectorAll('#budget .point').length"), len(runs.MIXES))
         self.assertIn("100.0 %" if len(self.js("return run.workers")) == 1 else "%", self.browser.text("#workers"))
 
-    def test_ratios_get_paired_intervals(self):
-        self.browser.wait("return [...document.querySelectorAll('.ratio-cell .ci')].length === arguments[0]".replace("arguments[0]", str(len(runs.MIXES) - 1)))
-        low, high = self.js("return pairedInterval([2, 4, 6, 8], [1, 2, 3, 4])")
-        self.assertAlmostEqual(low, 2)
-        self.assertAlmostEqual(high, 2)
+    def test_ratios_have_the_intervals_of_independent_errors(self):
+        low, high = self.js("return ratioInterval({relmse: 6, relmse_ci: [2, 18]}, {relmse: 3, relmse_ci: [1.5, 6]})")
+        width = math.hypot(math.log(3), math.log(2))
+        self.assertAlmostEqual(low, 2 * math.exp(-width))
+        self.assertAlmostEqual(high, 2 * math.exp(width))
+        for unknown in ("null", "[0, 1]"):
+            self.assertIsNone(self.js(f"return ratioInterval({{relmse: 6, relmse_ci: {unknown}}}, {{relmse: 3, relmse_ci: [1.5, 6]}})"))
+        run = json.loads((RUN / "run.json").read_text())
+        best = min(run["mixes"], key=lambda m: m["relmse"])
+        for mix in run["mixes"]:
+            if mix is best:
+                continue
+            half = [math.log(m["relmse_ci"][1] / m["relmse_ci"][0]) / 2 for m in (mix, best)]
+            ends = [mix["relmse"] / best["relmse"] * math.exp(sign * math.hypot(*half)) for sign in (-1, 1)]
+            self.assertIn(self.js("return interval(arguments[0])", ends), self.browser.text("#table"))
 
     def test_keyboard_reaches_meanings(self):
         self.js("document.querySelector('th .explained').focus()")
@@ -282,6 +314,8 @@ class Exports(Page):
             self.assertEqual(line.count("$") % 2, 0, line)
         self.assertEqual(text.count("\\begin{"), text.count("\\end{"))
         self.assertEqual(text.count("\\textbf"), 1)
+        self.assertIn("cells of $2 \\times 2$ pixels", text)
+        self.assertNotIn("blocks", text)
         self.assertEqual(self.js("return latexText('a_b%c&d#{e}')"), r"a\_b\%c\&d\#\{e\}")
         self.assertEqual(self.js("return latexNumber(1.234e-5)"), r"$1.23 \times 10^{-5}$")
 
@@ -337,12 +371,51 @@ class WithoutReference(Page):
         self.assertEqual(modes, ["colour", "noise", "cost", "samples"])
         self.assertEqual(self.js("return document.querySelectorAll('#chart .curve').length"), len(runs.MIXES))
 
+    def test_regions_that_were_asked_for_want_a_reference(self):
+        self.assertRegex(self.browser.text("#regions"), "Asked for: shade.*--reference")
+        self.assertNotIn("None was asked for", self.browser.text("#regions"))
+        self.assertEqual(self.js("return document.querySelectorAll('.view')[0].querySelectorAll('.named rect').length"), 1)
+
+    def test_the_intervals_of_estimates_are_those_of_blocks(self):
+        self.assertIn("resampled $16 \\times 16$ blocks", self.js("return latexTable()"))
+        self.assertEqual(self.js("return [...document.querySelectorAll('#table [data-meaning^=\"Error of this mix\"] .ci')].length"), 0)
+
     def test_a_budget_in_samples_has_no_adherence(self):
         self.assertIn("CPU seconds per mix", self.browser.text("#budget-section h2"))
 
 
     def test_has_no_flip_book(self):
         self.assertEqual(self.js("return document.querySelectorAll('#flip-section').length"), 0)
+
+
+class Large(Page):
+    """Shown smaller than it is: figures are those of its own pixels all the same."""
+    run_folder = staticmethod(lambda: LARGE)
+    whole = "[0, 0, 1101, 961]"
+
+    def mixes(self):
+        return enumerate(json.loads((LARGE / "run.json").read_text())["mixes"])
+
+    def test_errors_are_those_of_run_json(self):
+        self.assertEqual(self.js("return viewer.reference.scale"), 2)
+        for i, mix in self.mixes():
+            mean = self.js(f"const s = viewer.shown[arguments[0]]; return meanOver(s.image, errorPlane(s.image, viewer.reference), {self.whole})", i)
+            self.assertLess(abs(mean / mix["relmse"] - 1), 2e-3)
+
+    def test_own_noise_is_that_of_run_json(self):
+        for i, mix in self.mixes():
+            mean = self.js(f"const s = viewer.shown[arguments[0]]; return meanOver(s.image, s.image.noise, {self.whole})", i)
+            self.assertLess(abs(mean / mix["estimated_relmse"] - 1), 5e-3)
+
+    def test_a_region_is_drawn_to_the_edge_and_not_beyond(self):
+        self.js("""viewer.drawing = true;
+          const view = document.querySelector('.view'), box = view.getBoundingClientRect();
+          view.setPointerCapture = () => {};
+          const at = (type, fx, fy) => view.dispatchEvent(new PointerEvent(type, {clientX: box.left + fx * box.width, clientY: box.top + fy * box.height}));
+          at('pointerdown', 0.001, 0.001); at('pointermove', 0.999, 0.999); at('pointerup', 0.999, 0.999);""")
+        self.assertIn("--region drawn=0,0,1101,961", self.browser.text("#selection-flag"))
+        for _, mix in self.mixes():
+            self.assertIn(self.js("return significant(arguments[0], 2)", mix["relmse"])[:3], self.browser.text("#regions"))
 
 
 class Transient(Page):

@@ -15,7 +15,8 @@ def penumbra(program, *arguments):
 
 def render(program, scene, out, *options, mixes=MIXES):
     flags = [flag for mix in mixes for flag in ("--mix", mix)]
-    penumbra(program, "render", scene, "--resolution", SIZE, "--tile", 32, "--out", out, "--quiet", *flags, *options)
+    size = () if "--resolution" in options else ("--resolution", SIZE, "--tile", 32)
+    penumbra(program, "render", scene, *size, "--out", out, "--quiet", *flags, *options)
     return pathlib.Path(out)
 
 
@@ -27,7 +28,15 @@ def with_reference(program, scene, folder):
 
 
 def without_reference(program, scene, folder):
-    return render(program, scene, folder / "alone", "--spp", 16)
+    return render(program, scene, folder / "alone", "--spp", 16, "--region", "shade=24,24,60,50")
+
+
+def large(program, scene, folder):
+    """Of more pixels than the page shows; 1101 and 961 are odd, so that the last column and row stand for fewer."""
+    size = ("--resolution", "1101x961", "--tile", 256)
+    reference = render(program, scene, folder / "large-reference", "--spp", 1, "--seed", 99, *size, mixes=["sa:1"])
+    image = next(reference.glob("*.exr"))
+    return render(program, scene, folder / "large", "--spp", 2, "--reference", image, *size, mixes=["sa:1", "bsdf:1"])
 
 
 def transient(program, scene, folder):

@@ -191,5 +191,41 @@ TEST(CommandLine, TakesRepeatedMixesBesideTheScene) {
   EXPECT_EQ(o.regions, std::vector<std::string>{"a=1,2,3,4"});
 }
 
+/// What CLI11 says of these words, or "".
+std::string said_of(const std::string& words, bool from_environment) {
+  CLI::App app;
+  ServerOptions options;
+  add_server_options(app, options, from_environment);
+  try {
+    app.parse(words);
+    return "";
+  } catch (const CLI::ParseError& fault) {
+    return fault.what();
+  }
+}
+
+TEST(ServerOptions, CertificatesAndTokensNeedAServerWhereALocalClusterWouldStandInForIt) {
+  for (const std::string flag : {"--tls-cert", "--tls-key", "--tls-ca", "--token-file"}) {
+    EXPECT_THAT(said_of(flag + " file", false), HasSubstr(flag));
+    EXPECT_EQ(said_of("--server host:7400 " + flag + " file", false), "");
+    EXPECT_EQ(said_of(flag + " file", true), "") << "PENUMBRA_SERVER may name it";
+  }
+}
+
+TEST(JobOptions, ThoseThatWereTypedAreFound) {
+  const std::vector<std::string> flags = job_flags();
+  EXPECT_THAT(flags, testing::IsSupersetOf({"--mix", "--camera-grid", "--transient", "--seed", "--strict"}));
+  EXPECT_THAT(flags, testing::Not(testing::Contains("scene")));
+  CLI::App app;
+  JobOptions options;
+  add_job_options(app, options);
+  app.parse("s.pbrt");
+  EXPECT_EQ(first_given(app, flags), "");
+  for (const std::string words : {"--camera-grid 4", "--transient 0,1,4", "--strict"}) {
+    app.parse("s.pbrt " + words);
+    EXPECT_EQ(first_given(app, flags), words.substr(0, words.find(' ')));
+  }
+}
+
 }  // namespace
 }  // namespace penumbra

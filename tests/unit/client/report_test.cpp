@@ -126,11 +126,35 @@ TEST(ImageJson, LayersAreThereWhereTheImageHasThem) {
   }
 }
 
+TEST(ImageJson, ErrorsOfLargeImagesAreTakenBeforeTheyAreAveraged) {
+  FilmImage image = gradient(2049, 1024), reference = image;
+  for (size_t i = 0; i < image.rgb.size(); ++i) {
+    reference.rgb[i] = 2;
+    // Around the reference, so that each 2×2 pixels average to it: by 1/16 in the left half, by 1/1024
+    // elsewhere.
+    const size_t x = i / 3 % 2049, y = i / 3 / 2049;
+    image.rgb[i] = 2 + ((x + y) % 2 == 0 ? 1.f : -1.f) * (x < 1024 ? 1.f / 16 : 1.f / 1024);
+  }
+  const Json layers = image_json(image, &reference)["layers"];
+  const std::vector<double> error = plane(layers["error"], 0, size_t{1025} * 512);
+  EXPECT_NEAR(error[0] / (1.0 / 256 / 4.01), 1, 1e-3);
+  EXPECT_NEAR(error[1023] / (1.0 / 1048576 / 4.01), 1, 1e-3) << "small errors keep their digits";
+  EXPECT_NEAR(error[1024] / (1.0 / 1048576 / 4.01), 1, 1e-3) << "the last column is one pixel wide";
+}
+
+TEST(ImageJson, ThePageMakesErrorsOfSmallImagesItself) {
+  const FilmImage image = gradient(4, 2);
+  EXPECT_FALSE(image_json(image, &image)["layers"].contains("error"));
+}
+
 TEST(ImageJson, LargeImagesAreAveraged) {
   const Json json = image_json(gradient(2049, 1024));
   EXPECT_EQ(json["scale"], 2);
   EXPECT_EQ(json["width"], 1025);
   EXPECT_EQ(json["height"], 512);
+  EXPECT_EQ(json["x1"], 2049);
+  EXPECT_EQ(json["y1"], 1024);
+  EXPECT_FALSE(json["layers"].contains("error")) << "without a reference";
 }
 
 class Report : public testing::Test {
@@ -182,6 +206,21 @@ TEST_F(Report, MissingImagesAreSaidOnThePage) {
   EXPECT_FALSE((*data)["images"][1].is_null());
   EXPECT_TRUE((*data)["reference"].is_null());
   EXPECT_EQ((*data)["notes"].size(), 2u);
+}
+
+TEST_F(Report, LargeImagesBringTheirErrorAndTheReferenceHasNone) {
+  for (const MixRecord& mix : run_.mixes)
+    ASSERT_TRUE(write_exr(folder_ / mix.image, gradient(1100, 960), {}).ok());
+  ASSERT_TRUE(write_exr(folder_ / "reference.exr", gradient(1100, 960), {}).ok());
+  write_run();
+  auto data = report_data(folder_);
+  ASSERT_TRUE(data.ok()) << message_of(data.status());
+  for (const Json& image : (*data)["images"]) EXPECT_TRUE(image["layers"].contains("error"));
+  EXPECT_FALSE((*data)["reference"]["layers"].contains("error"));
+  fs::remove(folder_ / "reference.exr");
+  data = report_data(folder_);
+  ASSERT_TRUE(data.ok());
+  for (const Json& image : (*data)["images"]) EXPECT_FALSE(image["layers"].contains("error"));
 }
 
 TEST_F(Report, NeedsARun) {
