@@ -16,7 +16,7 @@ namespace penumbra {
 /// The relMSE that the image would show against a perfect reference, by its own account.
 struct OwnError {
   double relmse = 0;
-  std::optional<ConfidenceInterval> relmse_ci;  ///< 95 %, from 16×16 blocks as in compare()
+  std::optional<ConfidenceInterval> relmse_ci;  ///< 95 %, from 16×16 blocks
 };
 
 /// Mean over pixels and channels of v/(R²+ε), v the variance layer (that of the mean). Nothing without
