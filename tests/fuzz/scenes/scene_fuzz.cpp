@@ -47,6 +47,15 @@ bool takes_minutes(const penumbra::SceneDescription& scene) {
                      [&](const penumbra::ObjectEntity& object) { return any(object.shapes); });
 }
 
+/// Grids of some thousand points, alike but for a factor: they took three quarters of the time. Those of one
+/// input in eight are made.
+bool is_passed_over(const penumbra::ShapeEntity& shape, const uint8_t* bytes, size_t count) {
+  if (shape.type != "sphere" && shape.type != "disk" && shape.type != "cylinder") return false;
+  uint32_t hash = 2166136261u;  // FNV-1a
+  for (size_t i = 0; i < count; ++i) hash = (hash ^ bytes[i]) * 16777619u;
+  return hash % 8 != 0;
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t count) {
@@ -60,6 +69,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t count) {
   if (!penumbra::check_files(*scene, file).ok()) return 0;
   std::vector<std::string> warnings;
   for (const penumbra::ShapeEntity& shape : scene->shapes)
-    if (penumbra::has_mesh(shape)) static_cast<void>(penumbra::make_mesh(shape, *scene, file, warnings));
+    if (penumbra::has_mesh(shape) && !is_passed_over(shape, bytes, count))
+      static_cast<void>(penumbra::make_mesh(shape, *scene, file, warnings));
   return 0;
 }
