@@ -105,11 +105,12 @@ bool DirectLight::clear(const Task& task, const LightSample& sample) {
                               : scene_.geometry.occluded(origin, end, counters_));
   }
   // A curved light is traced as a tessellation that the sampled point is not on: it is visible if the
-  // light is the first thing met.
+  // light is the first thing met, on the side that emits. The wall of one that emits inwards is in its way.
   const Ray ray{origin, sample.wi, 0, std::numeric_limits<float>::infinity(), time};
   const auto hit = scene_.geometry.intersect(ray, counters_);
-  const AreaEmitter& light = task.view.area();
-  return hit && hit->id.instance == light.instance && hit->id.mesh == light.mesh;
+  if (!hit) return false;
+  const Vec3d p = Vec3d(origin) + Vec3d(sample.wi) * double(hit->distance);
+  return scene_.lights.emitter_at(hit->id, p, sample.wi, time) == task.light;
 }
 
 }  // namespace penumbra
