@@ -36,6 +36,10 @@ struct AreaEmitter {
 /// Unit normal of the emission side at a point of the shape.
 Vec3d emission_normal(const LightShape& shape, const Vec3d& p);
 
+/// Whether a light that emits inwards hides its point `on_light` from x: that lies on the far side of a
+/// closed wall, or out through the side of a tube. For queries that do not meet the light's own surface.
+bool behind_own_wall(const LightShape& shape, const Vec3d& on_light, const Vec3d& x);
+
 struct PointEmitter {
   Vec3f position;
   Rgb intensity;  ///< W sr⁻¹

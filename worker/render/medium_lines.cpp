@@ -139,22 +139,6 @@ static Vec3f off_the_light(const Vec3d& p, const Vec3d& n, const Vec3d& far_end)
   return Vec3f(p + n * (16 * double(std::numeric_limits<float>::epsilon()) * largest));
 }
 
-/// Whether a light that emits inwards is in its own way: on the far side of a closed wall, or out through the
-/// side of a tube. Its triangles are left out of the query, so that is asked here.
-static bool through_own_wall(const LightShape& shape, const Vec3d& apex, const Vec3d& x) {
-  if (const auto* sphere = std::get_if<SphereShape>(&shape))
-    return sphere->inwards && (x - Vec3d(sphere->center)).length() > double(sphere->radius);
-  const auto* tube = std::get_if<CylinderShape>(&shape);
-  if (tube == nullptr || !tube->inwards) return false;
-  const double height = Vec3d(tube->axis).length();
-  const Vec3d axis = Vec3d(tube->axis) / height, way = x - apex, from = apex - Vec3d(tube->base);
-  const Vec3d across = way - axis * way.dot(axis), start = from - axis * from.dot(axis);
-  // From the wall at start the way meets the wall again at t: |start + t across| = |start|.
-  const double t = across.length2() > 0 ? -2 * start.dot(across) / across.length2() : 2;
-  const double there = from.dot(axis) + t * way.dot(axis);
-  return t < 1 && there > 0 && there < height;
-}
-
 void MediumLines::find_visible(const Apex& apex, const Ray& ray, double t0, double t1) {
   const LightSet& lights = scene_.lights;
   LineQuery query;
@@ -213,7 +197,7 @@ Rgb MediumLines::along(const Apex& apex, const Ray& ray, const Start& start, siz
   if (!(density > 0)) return Rgb(0);
   const Vec3f x(Vec3d(ray.origin) + Vec3d(ray.direction) * t);
   if (apex.light < scene_.lights.area.size() &&
-      through_own_wall(area_light(apex.light).shape, apex.p, Vec3d(x)))
+      behind_own_wall(area_light(apex.light).shape, apex.p, Vec3d(x)))
     return Rgb(0);
   Vec3f wi;
   double distance = 0;

@@ -104,6 +104,9 @@ bool DirectLight::clear(const Task& task, const LightSample& sample) {
     return !(shaft != nullptr ? scene_.geometry.occluded(*shaft, origin, end, counters_)
                               : scene_.geometry.occluded(origin, end, counters_));
   }
+  if (task.view.area().invisible)  // there is nothing that a ray could meet
+    return !behind_own_wall(task.view.area().shape, sample.at.p, Vec3d(origin)) &&
+           !scene_.geometry.occluded(origin, Vec3f(sample.at.p), counters_, time);
   // A curved light is traced as a tessellation that the sampled point is not on: it is visible if the
   // light is the first thing met, on the side that emits. The wall of one that emits inwards is in its way.
   const Ray ray{origin, sample.wi, 0, std::numeric_limits<float>::infinity(), time};
