@@ -67,7 +67,7 @@ struct DeltaLight {
   Vec3f end;
 };
 
-/// `reach`: a length that leaves the scene (its diameter).
+/// `reach`: a length that leads from x out of the scene.
 DeltaLight delta_light_at(const DeltaEmitter& emitter, const Vec3f& x, float reach);
 
 }  // namespace penumbra

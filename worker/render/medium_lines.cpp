@@ -26,7 +26,7 @@ LightSet far_lights(const Scene& scene) {
   for (const DeltaEmitter& e : scene.lights.delta)
     if (std::holds_alternative<DistantEmitter>(e)) far.delta.push_back(e);
   far.by_mesh.resize(scene.meshes.size());
-  far.finish(scene.lights.reach());
+  far.finish(scene.lights.reach(), scene.lights.centre());
   return far;
 }
 

@@ -69,8 +69,10 @@ absl::StatusOr<ScenePtr> RenderSceneBuilder::build() {
   RETURN_IF_ERROR(build_geometry());
   Vec3f lo, hi;
   scene_->geometry->bounds(lo, hi);
-  const float reach = lo.x <= hi.x ? (hi - lo).length() : 1;
-  scene_->lights.finish(reach);
+  if (lo.x <= hi.x)
+    scene_->lights.finish((hi - lo).length(), lo * 0.5f + hi * 0.5f);
+  else
+    scene_->lights.finish(1, Vec3f(0));
   return std::move(scene_);
 }
 

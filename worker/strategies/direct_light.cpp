@@ -69,10 +69,14 @@ Rgb DirectLight::draw_lights(const ShadingPoint& point, const PassSampler& sampl
   return sum;
 }
 
+float DirectLight::reach(const ShadingPoint& point) const {
+  return point.bsdf != nullptr ? scene_.lights.reach() : scene_.lights.reach_from(point.above);
+}
+
 LightView DirectLight::view_of(const ShadingPoint& point, size_t light) {
   const LightSet& lights = scene_.lights;
   if (light < lights.area.size()) return LightView(point, now_.at(light, point.time), &sight_);
-  return LightView(point, lights.environments[light - lights.area.size()], lights.reach());
+  return LightView(point, lights.environments[light - lights.area.size()], reach(point));
 }
 
 Rgb DirectLight::ask(const Task& task, const PassSampler& sampler, int depth) {
@@ -146,7 +150,7 @@ DirectLight::Integrand DirectLight::integrand(const ShadingPoint& point, size_t 
 }
 
 Rgb DirectLight::delta(const ShadingPoint& point, const DeltaEmitter& emitter, float weight) {
-  const DeltaLight light = delta_light_at(emitter, point.above, scene_.lights.reach());
+  const DeltaLight light = delta_light_at(emitter, point.above, reach(point));
   if (is_black(light.irradiance)) return Rgb(0);
   Rgb f = point.scatter(light.wi) * light.irradiance;
   if (is_black(f) || scene_.geometry.occluded(point.origin(light.wi), light.end, counters_, point.time))

@@ -94,7 +94,7 @@ bool DirectLight::clear(const Task& task, const LightSample& sample) {
   const Vec3f& origin = task.view.point().origin(sample.wi);
   const float time = task.view.point().time;
   if (!task.view.is_area())
-    return !scene_.geometry.occluded(origin, origin + sample.wi * scene_.lights.reach(), counters_, time);
+    return !scene_.geometry.occluded(origin, origin + sample.wi * task.view.reach(), counters_, time);
   if (const VisibleRegion* region = task.view.region(); region != nullptr && !region->holds(sample.at.p))
     return false;
   if (task.view.area().flat) {

@@ -149,6 +149,43 @@ Shape "sphere" "float radius" 2 AttributeEnd
       {"bsdf:1+sa:1", "line-sa@u:1", "line-sa@v:1", "bsdf:1+line-sa@u:1"}, less);
 }
 
+/// Points of the fog lie farther from the ball than everything solid is large.
+TEST_F(EnvironmentLines, AFogInTheShadowOfABall) {
+  FilmImage map;
+  map.width = 64;
+  map.height = 32;
+  map.window = {0, 0, 64, 32};
+  for (int i = 0; i < 64 * 32 * 3; ++i) map.rgb.push_back(i < 64 * 3 ? 100.f : 0.f);  // about +z alone
+  ASSERT_TRUE(write_exr(folder_ / "map.exr", map, {}).ok());
+  const ScenePtr made =
+      scene(R"(LightSource "infinite" "string mapname" "map.exr"
+)",
+            R"(AttributeBegin MediumInterface "m" "" Material "interface"
+Shape "sphere" "float radius" 20 AttributeEnd
+MediumInterface "m" "m"
+Material "matte" "rgb Kd" [0 0 0]
+AttributeBegin Translate 0 0 3 Shape "sphere" "float radius" 0.5 AttributeEnd
+)",
+            R"(MakeNamedMedium "m" "string type" "homogeneous" "rgb sigma_a" [0.01 0.01 0.01]
+  "rgb sigma_s" [0.1 0.1 0.1]
+MediumInterface "" "m"
+LookAt 0 0 0  0 0 1  0 1 0
+Camera "perspective" "float fov" 2
+WorldBegin
+)");
+  ASSERT_TRUE(made);
+  const std::vector<std::string> mixes = {"sa:2",
+                                          "bsdf:4",
+                                          "bsdf:1+sa:1",
+                                          "line-sa@v:1",
+                                          "line-sa@u:2",
+                                          "sa:1+line-sa@v:1/free",
+                                          "sa:2/medium=line"};
+  const test::Rendered rendered = test::render(*made, test::job(8, 8, mixes, 16));
+  for (size_t m = 0; m < mixes.size(); ++m)
+    for (const float value : rendered.images[m].rgb) ASSERT_EQ(value, 0) << mixes[m];
+}
+
 /// The map's directions are drawn out along one axis: so are their solid angles.
 TEST_F(EnvironmentLines, AMapUnderAScaleThatIsNotUniform) {
   write_map(16, 8, {{3, 2, 6.f}});
