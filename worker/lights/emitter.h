@@ -26,6 +26,9 @@ struct AreaEmitter {
   bool crowded = true;
   /// Its surface is not there for rays (`"float alpha" 0`): a material's direction cannot meet it.
   bool invisible = false;
+  /// It is flat and has holes where its texture of alpha is 0 (Geometry::in_hole()): no light comes from
+  /// there.
+  bool has_holes = false;
   /// It moves: `shape` is where it is when the shutter opens; moving_light.h says where else. Null: it
   /// stands.
   std::shared_ptr<const LightMotion> motion = nullptr;

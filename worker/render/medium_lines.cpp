@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "worker/lights/spot_cone.h"
+#include "worker/strategies/light_hit.h"
 
 namespace penumbra {
 namespace {
@@ -66,6 +67,7 @@ Rgb MediumLines::estimate(const Ray& ray, double until, const Start& start, cons
   Rgb sum(0);
   const auto ask = [&](size_t light, double weight, int i, int n) {
     Apex apex = choose(light, numbers.light(depth, uint32_t(lights.draws() ? 0 : light), 0, i, n));
+    if (apex.weight == 0) return;
     apex.weight *= weight;
     for (size_t part = 0; part < parts; ++part)
       sum += along(apex, ray, start, part, until,
@@ -104,7 +106,8 @@ MediumLines::Apex MediumLines::choose(size_t light, const Vec2d& u) {
     const LightPoint at = sample_area(area_light(light).shape, Vec3d(0), u);
     apex.p = at.p;
     apex.n = at.n;
-    apex.weight = area(area_light(light).shape);
+    apex.weight =
+        in_hole(*scene_.geometry, area_light(light), at.p, time_) ? 0 : area(area_light(light).shape);
     return apex;
   }
   const DeltaEmitter& emitter = lights.delta[light - lights.area.size() - lights.environments.size()];

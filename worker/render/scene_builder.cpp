@@ -208,6 +208,7 @@ absl::Status RenderSceneBuilder::build_geometry() {
     inputs.push_back({&scene_->meshes[m].mesh, alpha_test(m), visible_[m], scene_->meshes[m].tubes.get()});
   ASSIGN_OR_RETURN(scene_->geometry, Geometry::build(inputs, objects_, placed_, options_.threads));
   for (AreaEmitter& light : scene_->lights.area) {
+    light.has_holes = light.flat && alpha_[light.mesh].texture >= 0;
     if (!light.flat || light.motion) continue;
     const PrimitiveId id{kNone, light.mesh, light.first_primitive};
     const LightPlace place =

@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "worker/strategies/light_hit.h"
+
 namespace penumbra {
 namespace {
 
@@ -137,7 +139,8 @@ DirectLight::Integrand DirectLight::integrand(const ShadingPoint& point, size_t 
   const LightView view = view_of(point, area_emitter);
   Task task{view, area_emitter, 1};
   task.strategies = now_.strategies(area_emitter, point.time);
-  const LightSample sample = towards(view, {on_light, emission_normal(view.area().shape, on_light), 0});
+  LightSample sample = towards(view, {on_light, emission_normal(view.area().shape, on_light), 0});
+  if (in_hole(scene_.geometry, view.area(), on_light, point.time)) sample.radiance = Rgb(0);
   candidates_.assign(1, {sample, point.scatter(sample.wi) * sample.radiance, mix_.slots(), kNoLine});
   own_lines_.clear();
   sight_.skip();

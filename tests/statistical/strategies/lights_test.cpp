@@ -1,5 +1,5 @@
-// Lights that are in their own way or that rays do not meet: every strategy must see of them what the others
-// see.
+// Lights that are in their own way, that rays do not meet, or that have holes: every strategy must see of
+// them what the others see.
 #include <gtest/gtest.h>
 
 #include "film/statistics.h"
@@ -12,6 +12,7 @@ const std::string kHead = R"(LookAt 0 3 6  0 0.6 0  0 1 0
 Camera "perspective" "float fov" 40
 Film "image" "integer xresolution" 64 "integer yresolution" 48
 WorldBegin
+Texture "holes" "float" "checkerboard" "float uscale" 3 "float vscale" 3 "float tex1" 0 "float tex2" 1
 Material "matte" "rgb Kd" [ 0.5 0.6 0.7 ]
 Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ] "point P" [ -4 0 -4  -4 0 4  4 0 4  4 0 -4 ]
 )";
@@ -102,6 +103,70 @@ TEST(InvisibleLights, RoundOnesLightWhatVisibleOnesLight) {
       expect_alike(kHead + kBlocker + above(shape, "", more), kHead + kBlocker + above(shape, alpha, more),
                    mixes);
     }
+}
+
+const std::vector<std::string> kEveryStrategy = {"bsdf:8",
+                                                 "sa:2",
+                                                 "area:2",
+                                                 "bsdf:1+sa:1",
+                                                 "visible-area:2",
+                                                 "line-area@0:2",
+                                                 "line-sa@u:2",
+                                                 "line-uniform@0:2",
+                                                 "line-analytic@0:2",
+                                                 "line-sa@v:1",
+                                                 "bsdf:1+visible-area:1",
+                                                 "bsdf:1+line-sa@v:1",
+                                                 "sa:1+line-area@90:1/free",
+                                                 "line-sa@u:1+sa:1/smooth=auto"};
+
+TEST(LightsWithHoles, Quad) {
+  test::expect_agreement(
+      test::load_text(kHead + kBlocker +
+                      light(R"(Shape "quad" "point o" [ -0.7 2.2 -0.5 ] "vector u" [ 1.4 0 0 ]
+"vector v" [ 0 0 0.9 ] "texture alpha" "holes")")),
+      kEveryStrategy, passes(64));
+}
+
+TEST(LightsWithHoles, TwoSidedTrianglesAndASphere) {
+  test::expect_agreement(test::load_text(kHead + kBlocker +
+                                         light(R"(Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ]
+"point P" [ -1 1.8 -0.5  0.6 1.7 -0.4  0.8 1.6 0.8  -1 2 0.9 ] "float uv" [ 0 0 1 0 1 1 0 1 ] "texture alpha" "holes")",
+                                               "\"bool twosided\" true") +
+                                         light("Translate 2 0 0 " + sphere("\"texture alpha\" \"holes\""))),
+                         kEveryStrategy, passes(64));
+}
+
+TEST(LightsWithHoles, OneThatMoves) {
+  test::expect_agreement(
+      test::load_text(kHead + kBlocker +
+                      light(R"(ActiveTransform EndTime Translate 0.6 0.2 0 Rotate 20 0 1 0 ActiveTransform All
+Shape "quad" "point o" [ -0.7 2.2 -0.5 ] "vector u" [ 1.4 0 0 ] "vector v" [ 0 0 0.9 ] "texture alpha" "holes")")),
+      {"bsdf:8", "sa:2", "bsdf:1+sa:1", "line-sa@u:2", "line-area@0:1"}, passes(64));
+}
+
+TEST(LightsWithHoles, WhenTheirLightArrives) {
+  test::AgreementSpec how = passes(64);
+  how.transient = Transient{6, 12, 4};
+  test::expect_agreement(
+      test::load_text(kHead + kBlocker +
+                      light(R"(Shape "quad" "point o" [ -0.7 2.2 -0.5 ] "vector u" [ 1.4 0 0 ]
+"vector v" [ 0 0 0.9 ] "texture alpha" "holes")")),
+      {"bsdf:2+sa:2", "line-sa@u:2", "line-analytic@0:2"}, how);
+}
+
+TEST(LightsWithHoles, InAFog) {
+  test::AgreementSpec how = passes(32);
+  how.width = 40;
+  how.height = 30;
+  test::expect_agreement(
+      test::load_text(
+          R"(MakeNamedMedium "thin" "string type" "homogeneous" "rgb sigma_a" [0.01 0.02 0.03] "rgb sigma_s" [0.1 0.1 0.1]
+MediumInterface "" "thin"
+)" + kHead +
+          kBlocker + light(R"(Shape "quad" "point o" [ -0.7 2.2 -0.5 ] "vector u" [ 1.4 0 0 ]
+"vector v" [ 0 0 0.9 ] "texture alpha" "holes")")),
+      {"bsdf:2+sa:2", "sa:2", "line-sa@v:1", "sa:2/medium=line"}, how);
 }
 
 }  // namespace
