@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "proto/status.h"
+#include "scenes/similarity.h"
 #include "scenes/substitutes.h"
 #include "worker/effects/environment_map.h"
 #include "worker/sampling/warp.h"
@@ -58,6 +59,11 @@ absl::StatusOr<Environment> Environment::build(const LightEntity& light, const S
     warnings.push_back(what);
     return e;
   }
+  if (double scale = 1; !is_similarity(light.placement.start, scale)) {
+    const Imath::M33d linear(e.to_world_);
+    e.volume_ = std::abs(linear.determinant());
+    if (!(e.volume_ > 0)) return invalid_input("{}: the environment map's transform is singular", at);
+  }
   auto map = std::make_shared<EnvironmentMap>();
   if (absl::Status s = map->read(*path, v4); !s.ok())
     return invalid_input("{}: environment map '{}': {}", at, name, message_of(s));
@@ -99,9 +105,10 @@ EnvironmentSample Environment::sample(const Vec2d& u) const {
   }
   int x = 0, y = 0;
   const Vec3d local = map_->sample(u, x, y);
-  s.wi = (Vec3f(local) * to_world_).normalized();
+  const Vec3f world = Vec3f(local) * to_world_;
+  s.wi = world.normalized();
   s.radiance = map_->texel(x, y) * scale_;
-  s.pdf = luminance_of(map_->texel(x, y)) / map_->total();
+  s.pdf = luminance_of(map_->texel(x, y)) / map_->total() * density_in_world(double{world.length()});
   return s;
 }
 
@@ -110,7 +117,14 @@ double Environment::pdf(const Vec3f& direction) const {
   int x = 0, y = 0;
   const Vec3f local = direction * to_light_;
   map_->texel_of(Vec3d(local).normalized(), x, y);
-  return luminance_of(map_->texel(x, y)) / map_->total();
+  const double density = luminance_of(map_->texel(x, y)) / map_->total();
+  return volume_ == 0 ? density : density * density_in_world(1 / Vec3d(local).length());
+}
+
+/// A thin cone from the origin to w has the volume dω / 3. Its image is |M w| long and |det M| times as
+/// large, so its solid angle is |det M| dω / |M w|³.
+double Environment::density_in_world(double length) const {
+  return volume_ == 0 ? 1 : length * length * length / volume_;
 }
 
 const ArcTable& Environment::arcs() const {

@@ -49,6 +49,9 @@ class Environment {
   const ArcTable& arcs() const;
   /// Of a cell of arcs() that the direction lies in to rounding: its texel's, if it is one.
   Rgb radiance(int column, int row, const Vec3f& direction) const;
+  /// Do meridians of the map's poles have the measure of arcs() in the world? Not under a transform that
+  /// changes angles.
+  bool has_arcs() const { return volume_ == 0; }
   /// Unit directions between the world and the axes of arcs().
   Vec3d to_world(const Vec3d& local) const { return (local * Imath::M33d(to_world_)).normalized(); }
   Vec3d to_local(const Vec3d& world) const { return (world * Imath::M33d(to_light_)).normalized(); }
@@ -61,8 +64,11 @@ class Environment {
  private:
   struct Arcs;
   void use(std::shared_ptr<const EnvironmentMap> map);
+  /// Density in the world over that in the map's axes, of a unit direction whose image has this length.
+  double density_in_world(double length) const;
   Rgb scale_{1};
   Imath::M33f to_light_, to_world_;
+  double volume_ = 0;  ///< |det to_world_| of a map if that changes angles; 0: it does not
   std::shared_ptr<const EnvironmentMap> map_;  ///< null: constant
   std::shared_ptr<Arcs> arcs_;                 ///< of the map
   std::shared_ptr<const Portal> portal_;

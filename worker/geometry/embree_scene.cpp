@@ -33,7 +33,7 @@ struct Scenes {
 
 struct EmbreeScene::Parts {
   DeviceHandle device;
-  std::vector<std::unique_ptr<AlphaTest>> alphas;  // Embree keeps the addresses
+  std::vector<std::unique_ptr<AlphaTest>> alphas;  // per mesh, null: opaque; Embree keeps the addresses
   Scenes all, alpha_only;
   Surfaces surfaces;
   uint32_t meshes = 0;
@@ -97,13 +97,15 @@ absl::StatusOr<std::unique_ptr<EmbreeScene>> EmbreeScene::build(std::span<const 
   for (const MeshInput& mesh : meshes) parts.surfaces.meshes.push_back(mesh.mesh);
   parts.surfaces.instances.assign(instances.begin(), instances.end());
 
+  parts.alphas.resize(meshes.size());
   std::vector<GeometryHandle> opaque_and_alpha(meshes.size());
   std::vector<bool> tested(meshes.size(), false);
   for (size_t m = 0; m < meshes.size(); ++m) {
     if (!meshes[m].visible) continue;
     const AlphaTest* alpha = nullptr;
     if (meshes[m].alpha) {
-      alpha = parts.alphas.emplace_back(std::make_unique<AlphaTest>(meshes[m].alpha)).get();
+      parts.alphas[m] = std::make_unique<AlphaTest>(meshes[m].alpha);
+      alpha = parts.alphas[m].get();
       tested[m] = parts.has_alpha = true;
     }
     if (meshes[m].tubes != nullptr) {
@@ -188,6 +190,13 @@ void EmbreeScene::beside(const Ray& ray, const Hit& first, const std::vector<boo
 
 bool EmbreeScene::has_alpha() const {
   return parts_->has_alpha;
+}
+
+bool EmbreeScene::in_hole(const PrimitiveId& first, uint32_t primitives, const Vec3d& p, float time) const {
+  const AlphaTest* alpha = parts_->alphas[first.mesh].get();
+  if (alpha == nullptr) return false;
+  const Place place = place_on(parts_->surfaces, first, primitives, p, time);
+  return !(*alpha)(place.primitive, float(place.u), float(place.v));
 }
 
 Imath::Box3f EmbreeScene::bounds(const PrimitiveId& first, uint32_t primitives) const {

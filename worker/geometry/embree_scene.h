@@ -25,6 +25,7 @@ class EmbreeScene {
   bool occluded_by_alpha(const Vec3f& x, const Vec3f& y, float time) const;
   bool occluded_by_alpha(const Vec3f& x, const LightEnd& y) const;
   bool has_alpha() const;
+  bool in_hole(const PrimitiveId& first, uint32_t primitives, const Vec3d& p, float time) const;
   /// Do the bounds of any triangle, or of an instance that moves at any time, meet the box, but those of a
   /// light's own `primitives`?
   /// Nor does what lies with the light in one plane and mesh count.

@@ -131,6 +131,10 @@ bool Geometry::has_alpha() const {
   return parts_->embree->has_alpha();
 }
 
+bool Geometry::in_hole(const PrimitiveId& first, uint32_t primitives, const Vec3d& p, float time) const {
+  return parts_->embree->in_hole(first, primitives, p, time);
+}
+
 LightPlace Geometry::place_of(const PrimitiveId& light, uint32_t primitives, const Vec3d& normal) const {
   PENUMBRA_CHECK(light.instance == kNone);
   const Imath::Box3f box = parts_->embree->bounds(light, primitives);

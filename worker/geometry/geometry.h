@@ -161,6 +161,9 @@ class Geometry {
   bool occluded_by_alpha(const Vec3f& x, const Vec3f& y, QueryCounters& counters, float time = 0) const;
   bool occluded_by_alpha(const Vec3f& x, const LightEnd& y, QueryCounters& counters) const;
   bool has_alpha() const;
+  /// Is the point p, of `primitives` triangles of an alpha-tested mesh from the given one on, where these are
+  /// cut out? `p` need not lie in their plane to the last bit.
+  bool in_hole(const PrimitiveId& first, uint32_t primitives, const Vec3d& p, float time) const;
   LightPlace place_of(const PrimitiveId& light, uint32_t primitives, const Vec3d& normal) const;
 
   /// The visible part of each query's chord as intervals of v in [0,1], P(v) = a + v (b - a); opaque

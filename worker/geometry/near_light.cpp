@@ -125,6 +125,27 @@ bool ray_hits(RTCScene scene, RTCIntersectContext& context, const Vec3f& x, cons
   return ray.tfar < 0;  // Embree's sign of a hit: -inf
 }
 
+Place place_on(const Surfaces& surfaces, const PrimitiveId& first, uint32_t primitives, const Vec3d& p,
+               float time) {
+  Place best;
+  double deepest = -std::numeric_limits<double>::infinity();
+  for (uint32_t k = 0; k < primitives; ++k) {
+    const PrimitiveId id{first.instance, first.mesh, first.primitive + k};
+    Vec3d c[3];
+    surfaces.triangle(id, time, c);
+    const Vec3d e1 = c[1] - c[0], e2 = c[2] - c[0], from = p - c[0], n = e1.cross(e2);
+    if (!(n.length2() > 0)) continue;
+    const double u = from.cross(e2).dot(n) / n.length2(), v = e1.cross(from).dot(n) / n.length2();
+    const double depth = std::min({u, v, 1 - u - v});
+    if (!(depth > deepest)) continue;
+    deepest = depth;
+    best.primitive = id.primitive;
+    best.u = std::clamp(u, 0., 1.);
+    best.v = std::clamp(v, 0., 1 - best.u);
+  }
+  return best;
+}
+
 bool approach_hits(RTCScene scene, const Surfaces& surfaces, const Vec3f& x, const LightEnd& y) {
   ApproachContext context{{}, &surfaces, &y, LightApproach(x, y)};
   rtcInitIntersectContext(&context.embree);

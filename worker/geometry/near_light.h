@@ -47,6 +47,17 @@ struct Surfaces {
   }
 };
 
+/// A place on a triangle of a mesh, as Hit has it.
+struct Place {
+  uint32_t primitive = 0;
+  double u = 0, v = 0;
+};
+
+/// Where p lies on a light of `primitives` flat triangles from the given one on: on the one that it is
+/// deepest inside of, to its edges if rounding leaves it outside.
+Place place_on(const Surfaces& surfaces, const PrimitiveId& first, uint32_t primitives, const Vec3d& p,
+               float time);
+
 /// Anything before the light's point, seen from x?
 bool approach_hits(RTCScene scene, const Surfaces& surfaces, const Vec3f& x, const LightEnd& y);
 

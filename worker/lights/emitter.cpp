@@ -71,6 +71,20 @@ Vec3d emission_normal(const LightShape& shape, const Vec3d& p) {
   return std::visit(NormalAt{p}, shape);
 }
 
+bool behind_own_wall(const LightShape& shape, const Vec3d& on_light, const Vec3d& x) {
+  if (const auto* sphere = std::get_if<SphereShape>(&shape))
+    return sphere->inwards && (x - Vec3d(sphere->center)).length() > double{sphere->radius};
+  const auto* tube = std::get_if<CylinderShape>(&shape);
+  if (tube == nullptr || !tube->inwards) return false;
+  const double height = Vec3d(tube->axis).length();
+  const Vec3d axis = Vec3d(tube->axis) / height, way = x - on_light, from = on_light - Vec3d(tube->base);
+  const Vec3d across = way - axis * way.dot(axis), start = from - axis * from.dot(axis);
+  // From the wall at start the way meets the wall again at t: |start + t across| = |start|.
+  const double t = across.length2() > 0 ? -2 * start.dot(across) / across.length2() : 2;
+  const double there = from.dot(axis) + t * way.dot(axis);
+  return t < 1 && there > 0 && there < height;
+}
+
 DeltaLight delta_light_at(const DeltaEmitter& emitter, const Vec3f& x, float reach) {
   return std::visit(At{x, reach}, emitter);
 }

@@ -26,6 +26,9 @@ struct AreaEmitter {
   bool crowded = true;
   /// Its surface is not there for rays (`"float alpha" 0`): a material's direction cannot meet it.
   bool invisible = false;
+  /// It is flat and has holes where its texture of alpha is 0 (Geometry::in_hole()): no light comes from
+  /// there.
+  bool has_holes = false;
   /// It moves: `shape` is where it is when the shutter opens; moving_light.h says where else. Null: it
   /// stands.
   std::shared_ptr<const LightMotion> motion = nullptr;
@@ -35,6 +38,10 @@ struct AreaEmitter {
 
 /// Unit normal of the emission side at a point of the shape.
 Vec3d emission_normal(const LightShape& shape, const Vec3d& p);
+
+/// Whether a light that emits inwards hides its point `on_light` from x: that lies on the far side of a
+/// closed wall, or out through the side of a tube. For queries that do not meet the light's own surface.
+bool behind_own_wall(const LightShape& shape, const Vec3d& on_light, const Vec3d& x);
 
 struct PointEmitter {
   Vec3f position;
@@ -63,7 +70,7 @@ struct DeltaLight {
   Vec3f end;
 };
 
-/// `reach`: a length that leaves the scene (its diameter).
+/// `reach`: a length that leads from x out of the scene.
 DeltaLight delta_light_at(const DeltaEmitter& emitter, const Vec3f& x, float reach);
 
 }  // namespace penumbra

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "proto/status.h"
+#include "scenes/similarity.h"
 #include "worker/lights/moving_light.h"
 #include "worker/render/light_params.h"
 #include "worker/render/scene_builder.h"
@@ -15,17 +16,6 @@ constexpr double kPi = std::numbers::pi;
 
 Vec3f point(const Matrix& m, const Vec3d& p) { return Vec3f(transform_point(m, p)); }
 Vec3f direction(const Matrix& m, const Vec3d& d) { return Vec3f(transform_direction(m, d)); }
-
-/// Lengths of the transformed unit axes; equal to rounding for a similarity. The bound is that of float
-/// input: a similarity written with seven digits is one.
-bool is_similarity(const Matrix& m, double& scale) {
-  const Vec3d x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]), z(m[2][0], m[2][1], m[2][2]);
-  scale = x.length();
-  const double slack = 16 * std::numeric_limits<float>::epsilon() * scale;
-  return std::abs(y.length() - scale) <= slack && std::abs(z.length() - scale) <= slack &&
-         std::abs(x.dot(y)) <= slack * scale && std::abs(x.dot(z)) <= slack * scale &&
-         std::abs(y.dot(z)) <= slack * scale;
-}
 
 /// A shape's own space and the light's: the world, or the space of the object of one that moves.
 struct LightSpace {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "worker/lights/spot_cone.h"
+#include "worker/strategies/light_hit.h"
 
 namespace penumbra {
 namespace {
@@ -26,7 +27,7 @@ LightSet far_lights(const Scene& scene) {
   for (const DeltaEmitter& e : scene.lights.delta)
     if (std::holds_alternative<DistantEmitter>(e)) far.delta.push_back(e);
   far.by_mesh.resize(scene.meshes.size());
-  far.finish(scene.lights.reach());
+  far.finish(scene.lights.reach(), scene.lights.centre());
   return far;
 }
 
@@ -66,6 +67,7 @@ Rgb MediumLines::estimate(const Ray& ray, double until, const Start& start, cons
   Rgb sum(0);
   const auto ask = [&](size_t light, double weight, int i, int n) {
     Apex apex = choose(light, numbers.light(depth, uint32_t(lights.draws() ? 0 : light), 0, i, n));
+    if (apex.weight == 0) return;
     apex.weight *= weight;
     for (size_t part = 0; part < parts; ++part)
       sum += along(apex, ray, start, part, until,
@@ -104,7 +106,8 @@ MediumLines::Apex MediumLines::choose(size_t light, const Vec2d& u) {
     const LightPoint at = sample_area(area_light(light).shape, Vec3d(0), u);
     apex.p = at.p;
     apex.n = at.n;
-    apex.weight = area(area_light(light).shape);
+    apex.weight =
+        in_hole(*scene_.geometry, area_light(light), at.p, time_) ? 0 : area(area_light(light).shape);
     return apex;
   }
   const DeltaEmitter& emitter = lights.delta[light - lights.area.size() - lights.environments.size()];
@@ -137,22 +140,6 @@ bool MediumLines::clip_to_lit(const Apex& apex, const Ray& ray, double& t0, doub
 static Vec3f off_the_light(const Vec3d& p, const Vec3d& n, const Vec3d& far_end) {
   const double largest = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) + (far_end - p).length();
   return Vec3f(p + n * (16 * double(std::numeric_limits<float>::epsilon()) * largest));
-}
-
-/// Whether a light that emits inwards is in its own way: on the far side of a closed wall, or out through the
-/// side of a tube. Its triangles are left out of the query, so that is asked here.
-static bool through_own_wall(const LightShape& shape, const Vec3d& apex, const Vec3d& x) {
-  if (const auto* sphere = std::get_if<SphereShape>(&shape))
-    return sphere->inwards && (x - Vec3d(sphere->center)).length() > double(sphere->radius);
-  const auto* tube = std::get_if<CylinderShape>(&shape);
-  if (tube == nullptr || !tube->inwards) return false;
-  const double height = Vec3d(tube->axis).length();
-  const Vec3d axis = Vec3d(tube->axis) / height, way = x - apex, from = apex - Vec3d(tube->base);
-  const Vec3d across = way - axis * way.dot(axis), start = from - axis * from.dot(axis);
-  // From the wall at start the way meets the wall again at t: |start + t across| = |start|.
-  const double t = across.length2() > 0 ? -2 * start.dot(across) / across.length2() : 2;
-  const double there = from.dot(axis) + t * way.dot(axis);
-  return t < 1 && there > 0 && there < height;
 }
 
 void MediumLines::find_visible(const Apex& apex, const Ray& ray, double t0, double t1) {
@@ -213,7 +200,7 @@ Rgb MediumLines::along(const Apex& apex, const Ray& ray, const Start& start, siz
   if (!(density > 0)) return Rgb(0);
   const Vec3f x(Vec3d(ray.origin) + Vec3d(ray.direction) * t);
   if (apex.light < scene_.lights.area.size() &&
-      through_own_wall(area_light(apex.light).shape, apex.p, Vec3d(x)))
+      behind_own_wall(area_light(apex.light).shape, apex.p, Vec3d(x)))
     return Rgb(0);
   Vec3f wi;
   double distance = 0;

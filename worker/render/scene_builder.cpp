@@ -69,8 +69,10 @@ absl::StatusOr<ScenePtr> RenderSceneBuilder::build() {
   RETURN_IF_ERROR(build_geometry());
   Vec3f lo, hi;
   scene_->geometry->bounds(lo, hi);
-  const float reach = lo.x <= hi.x ? (hi - lo).length() : 1;
-  scene_->lights.finish(reach);
+  if (lo.x <= hi.x)
+    scene_->lights.finish((hi - lo).length(), lo * 0.5f + hi * 0.5f);
+  else
+    scene_->lights.finish(1, Vec3f(0));
   return std::move(scene_);
 }
 
@@ -206,6 +208,7 @@ absl::Status RenderSceneBuilder::build_geometry() {
     inputs.push_back({&scene_->meshes[m].mesh, alpha_test(m), visible_[m], scene_->meshes[m].tubes.get()});
   ASSIGN_OR_RETURN(scene_->geometry, Geometry::build(inputs, objects_, placed_, options_.threads));
   for (AreaEmitter& light : scene_->lights.area) {
+    light.has_holes = light.flat && alpha_[light.mesh].texture >= 0;
     if (!light.flat || light.motion) continue;
     const PrimitiveId id{kNone, light.mesh, light.first_primitive};
     const LightPlace place =

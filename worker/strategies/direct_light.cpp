@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "worker/strategies/light_hit.h"
+
 namespace penumbra {
 namespace {
 
@@ -69,10 +71,14 @@ Rgb DirectLight::draw_lights(const ShadingPoint& point, const PassSampler& sampl
   return sum;
 }
 
+float DirectLight::reach(const ShadingPoint& point) const {
+  return point.bsdf != nullptr ? scene_.lights.reach() : scene_.lights.reach_from(point.above);
+}
+
 LightView DirectLight::view_of(const ShadingPoint& point, size_t light) {
   const LightSet& lights = scene_.lights;
   if (light < lights.area.size()) return LightView(point, now_.at(light, point.time), &sight_);
-  return LightView(point, lights.environments[light - lights.area.size()], lights.reach());
+  return LightView(point, lights.environments[light - lights.area.size()], reach(point));
 }
 
 Rgb DirectLight::ask(const Task& task, const PassSampler& sampler, int depth) {
@@ -133,7 +139,8 @@ DirectLight::Integrand DirectLight::integrand(const ShadingPoint& point, size_t 
   const LightView view = view_of(point, area_emitter);
   Task task{view, area_emitter, 1};
   task.strategies = now_.strategies(area_emitter, point.time);
-  const LightSample sample = towards(view, {on_light, emission_normal(view.area().shape, on_light), 0});
+  LightSample sample = towards(view, {on_light, emission_normal(view.area().shape, on_light), 0});
+  if (in_hole(scene_.geometry, view.area(), on_light, point.time)) sample.radiance = Rgb(0);
   candidates_.assign(1, {sample, point.scatter(sample.wi) * sample.radiance, mix_.slots(), kNoLine});
   own_lines_.clear();
   sight_.skip();
@@ -146,7 +153,7 @@ DirectLight::Integrand DirectLight::integrand(const ShadingPoint& point, size_t 
 }
 
 Rgb DirectLight::delta(const ShadingPoint& point, const DeltaEmitter& emitter, float weight) {
-  const DeltaLight light = delta_light_at(emitter, point.above, scene_.lights.reach());
+  const DeltaLight light = delta_light_at(emitter, point.above, reach(point));
   if (is_black(light.irradiance)) return Rgb(0);
   Rgb f = point.scatter(light.wi) * light.irradiance;
   if (is_black(f) || scene_.geometry.occluded(point.origin(light.wi), light.end, counters_, point.time))

@@ -88,6 +88,8 @@ class DirectLight {
   static bool is_black(const Rgb& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 
   Rgb draw_lights(const ShadingPoint& point, const PassSampler& sampler, int depth);
+  /// A length that leads from the point past everything.
+  float reach(const ShadingPoint& point) const;
   LightView view_of(const ShadingPoint& point, size_t light);
   Rgb ask(const Task& task, const PassSampler& sampler, int depth);
   Rgb answer(const Task& task, const PassSampler& sampler, int depth);

@@ -136,6 +136,10 @@ void DirectLight::push(const Task& task, const LightSample& sample, size_t slot,
   const Rgb f =
       (rest ? point.scatter_beyond_lambertian(sample.wi) : point.scatter(sample.wi)) * sample.radiance;
   if (is_black(f)) return;
+  // What bsdf meets is a hole to the ray itself.
+  if (sight != Sight::kTraced && task.view.is_area() &&
+      in_hole(scene_.geometry, task.view.area(), sample.at.p, point.time))
+    return;
   candidates_.push_back({sample, f, slot, line, s, sight});
 }
 

@@ -94,7 +94,7 @@ bool DirectLight::clear(const Task& task, const LightSample& sample) {
   const Vec3f& origin = task.view.point().origin(sample.wi);
   const float time = task.view.point().time;
   if (!task.view.is_area())
-    return !scene_.geometry.occluded(origin, origin + sample.wi * scene_.lights.reach(), counters_, time);
+    return !scene_.geometry.occluded(origin, origin + sample.wi * task.view.reach(), counters_, time);
   if (const VisibleRegion* region = task.view.region(); region != nullptr && !region->holds(sample.at.p))
     return false;
   if (task.view.area().flat) {
@@ -104,12 +104,16 @@ bool DirectLight::clear(const Task& task, const LightSample& sample) {
     return !(shaft != nullptr ? scene_.geometry.occluded(*shaft, origin, end, counters_)
                               : scene_.geometry.occluded(origin, end, counters_));
   }
+  if (task.view.area().invisible)  // there is nothing that a ray could meet
+    return !behind_own_wall(task.view.area().shape, sample.at.p, Vec3d(origin)) &&
+           !scene_.geometry.occluded(origin, Vec3f(sample.at.p), counters_, time);
   // A curved light is traced as a tessellation that the sampled point is not on: it is visible if the
-  // light is the first thing met.
+  // light is the first thing met, on the side that emits. The wall of one that emits inwards is in its way.
   const Ray ray{origin, sample.wi, 0, std::numeric_limits<float>::infinity(), time};
   const auto hit = scene_.geometry.intersect(ray, counters_);
-  const AreaEmitter& light = task.view.area();
-  return hit && hit->id.instance == light.instance && hit->id.mesh == light.mesh;
+  if (!hit) return false;
+  const Vec3d p = Vec3d(origin) + Vec3d(sample.wi) * double(hit->distance);
+  return scene_.lights.emitter_at(hit->id, p, sample.wi, time) == task.light;
 }
 
 }  // namespace penumbra

@@ -32,6 +32,11 @@ LightEnd end_on_light(const AreaEmitter& light, const Vec3d& p, const Vec3d& nor
   return {p, {normal, light.rounding}, id, light.primitives, light.crowded, time};
 }
 
+bool in_hole(const Geometry& geometry, const AreaEmitter& light, const Vec3d& p, float time) {
+  if (!light.has_holes) return false;
+  return geometry.in_hole({light.instance, light.mesh, light.first_primitive}, light.primitives, p, time);
+}
+
 std::optional<LightHit> light_met(const Geometry& geometry, const LightSet& lights, const Ray& ray,
                                   const Hit& first, QueryCounters& counters) {
   const Vec3d p = Vec3d(ray.origin) + Vec3d(ray.direction) * double(first.distance);

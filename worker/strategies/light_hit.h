@@ -15,6 +15,9 @@ struct LightHit {
 /// Where a shadow segment to the point p of a flat light ends, at a time of the shutter.
 LightEnd end_on_light(const AreaEmitter& light, const Vec3d& p, const Vec3d& normal, float time);
 
+/// Is the point p of a light where that has a hole, so that no light comes from it?
+bool in_hole(const Geometry& geometry, const AreaEmitter& light, const Vec3d& p, float time);
+
 /// The area light that radiates along the ray, `first` being the nearest surface that the ray met. Where a
 /// flat light is so close to other surfaces that the ray's distances do not say which is first, that is
 /// decided as for shadow segments (LightEnd).

@@ -1,12 +1,16 @@
 #include "worker/strategies/light_set.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "worker/lights/moving_light.h"
 
 namespace penumbra {
-void LightSet::finish(float reach) {
+
+void LightSet::finish(float reach, const Vec3f& centre) {
   reach_ = reach;
+  centre_ = centre;
   crowded.clear();
   crowded_bounds.makeEmpty();
   for (const AreaEmitter& light : area) {
@@ -39,6 +43,11 @@ void LightSet::finish(float reach) {
       place(bounds_of(std::get<SpotEmitter>(delta[d])), l);
   }
   tree_ = LightTree(bounds);
+}
+
+float LightSet::reach_from(const Vec3f& x) const {
+  const double far = (Vec3d(x) - Vec3d(centre_)).length() + double{reach_};
+  return std::nextafter(float(far), std::numeric_limits<float>::infinity());
 }
 
 bool LightSet::is_far(size_t light) const {

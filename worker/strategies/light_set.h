@@ -38,9 +38,14 @@ class LightSet {
   std::vector<bool> crowded;
   Imath::Box3d crowded_bounds;
 
-  /// To be called when the lists are complete. `reach` is the scene's diameter.
-  void finish(float reach);
+  /// To be called when the lists are complete. `reach` is the diameter of what can hide light, `centre` the
+  /// middle of its bounds.
+  void finish(float reach, const Vec3f& centre);
+  /// From a surface, past everything.
   float reach() const { return reach_; }
+  /// From anywhere, past everything: fog has no surface, and reaches farther than what has.
+  float reach_from(const Vec3f& x) const;
+  const Vec3f& centre() const { return centre_; }
 
   /// The area emitter that radiates from the point p of the hit surface against the ray's direction, at a
   /// time of the shutter; kNone if there is none.
@@ -62,6 +67,7 @@ class LightSet {
   double share_of_far(double far, const Receiver& receiver) const;
 
   float reach_ = 0;
+  Vec3f centre_{0};
   LightTree tree_;
   std::vector<uint32_t> near_, far_;  ///< lights, in the tree's order; lights infinitely far away
   std::vector<uint32_t> place_;       ///< per light: its place in near_

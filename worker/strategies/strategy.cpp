@@ -93,7 +93,8 @@ Strategy fit_environment(const StrategyCount& wanted, const Environment& environ
     return PortalStrategy{};
   }
   if (lines && wanted.kind == StrategyKind::kLineSolidAngleU) return NormalArcStrategy{};
-  if (lines && wanted.kind == StrategyKind::kLineSolidAngleV) return MapArcStrategy{};
+  if (lines && wanted.kind == StrategyKind::kLineSolidAngleV && environment.has_arcs())
+    return MapArcStrategy{};
   return EnvironmentStrategy{};
 }
 

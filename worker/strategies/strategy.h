@@ -93,7 +93,7 @@ class LightView {
   /// `sight`: what is known of the light's visibility while it is asked; null: nothing.
   LightView(const ShadingPoint& point, const AreaEmitter& emitter, const LightSight* sight = nullptr)
       : point_(&point), area_(&emitter), sight_(sight) {}
-  /// `reach`: from x, past everything (LightSet::reach()).
+  /// `reach`: from x, past everything (LightSet).
   LightView(const ShadingPoint& point, const Environment& environment, float reach)
       : point_(&point), environment_(&environment), reach_(reach) {}
 

@@ -107,5 +107,27 @@ TEST(MediaAgreement, ALightThatEmitsInwards) {
       "Material \"matte\" \"rgb Kd\" [0 0 0] Shape \"sphere\" \"float radius\" 0.5 AttributeEnd\n");
 }
 
+/// A black ball is all there is to hide anything, so its size says nothing of how far a point of the fog is
+/// from it.
+TEST(MediaAgreement, AFogFarFromEverythingLiesInTheShadowOfABall) {
+  const ScenePtr scene = test::load_text(
+      R"(MakeNamedMedium "m" "string type" "homogeneous" "rgb sigma_a" [0.01 0.01 0.01] "rgb sigma_s" [0.1 0.1 0.1]
+MediumInterface "" "m"
+LookAt 0 0 0  0 0 1  0 1 0
+Camera "perspective" "float fov" 4
+WorldBegin
+LightSource "distant" "rgb L" [3 3 3] "point from" [0 0 1] "point to" [0 0 0]
+AttributeBegin MediumInterface "m" "" Material "interface" Shape "sphere" "float radius" 20 AttributeEnd
+MediumInterface "m" "m"
+Material "matte" "rgb Kd" [0 0 0]
+AttributeBegin Translate 0 0 3 Shape "sphere" "float radius" 0.5 AttributeEnd
+)");
+  ASSERT_TRUE(scene);
+  const std::vector<std::string> mixes = {"sa:2", "bsdf:2", "bsdf:1+sa:1", "sa:2/medium=line"};
+  const test::Rendered rendered = test::render(*scene, test::job(8, 8, mixes, 16));
+  for (size_t m = 0; m < mixes.size(); ++m)
+    for (const float value : rendered.images[m].rgb) EXPECT_EQ(value, 0) << mixes[m];
+}
+
 }  // namespace
 }  // namespace penumbra

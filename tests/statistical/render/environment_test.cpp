@@ -42,8 +42,9 @@ class EnvironmentLines : public testing::Test {
   void write_map(int width, int height, const std::vector<std::tuple<int, int, float>>& bright) const {
     test::write_sky_map(folder_ / "map.exr", width, height, bright);
   }
-  ScenePtr scene(const std::string& light, const std::string& shapes = kOverAFloor) const {
-    std::ofstream(folder_ / "scene.pbrt") << kCamera << light << shapes;
+  ScenePtr scene(const std::string& light, const std::string& shapes = kOverAFloor,
+                 const std::string& camera = kCamera) const {
+    std::ofstream(folder_ / "scene.pbrt") << camera << light << shapes;
     return test::load(folder_ / "scene.pbrt");
   }
   static test::AgreementSpec how() {
@@ -146,6 +147,83 @@ AttributeBegin MediumInterface "fog" "" Material "interface"
 Shape "sphere" "float radius" 2 AttributeEnd
 )"),
       {"bsdf:1+sa:1", "line-sa@u:1", "line-sa@v:1", "bsdf:1+line-sa@u:1"}, less);
+}
+
+/// Points of the fog lie farther from the ball than everything solid is large.
+TEST_F(EnvironmentLines, AFogInTheShadowOfABall) {
+  FilmImage map;
+  map.width = 64;
+  map.height = 32;
+  map.window = {0, 0, 64, 32};
+  for (int i = 0; i < 64 * 32 * 3; ++i) map.rgb.push_back(i < 64 * 3 ? 100.f : 0.f);  // about +z alone
+  ASSERT_TRUE(write_exr(folder_ / "map.exr", map, {}).ok());
+  const ScenePtr made =
+      scene(R"(LightSource "infinite" "string mapname" "map.exr"
+)",
+            R"(AttributeBegin MediumInterface "m" "" Material "interface"
+Shape "sphere" "float radius" 20 AttributeEnd
+MediumInterface "m" "m"
+Material "matte" "rgb Kd" [0 0 0]
+AttributeBegin Translate 0 0 3 Shape "sphere" "float radius" 0.5 AttributeEnd
+)",
+            R"(MakeNamedMedium "m" "string type" "homogeneous" "rgb sigma_a" [0.01 0.01 0.01]
+  "rgb sigma_s" [0.1 0.1 0.1]
+MediumInterface "" "m"
+LookAt 0 0 0  0 0 1  0 1 0
+Camera "perspective" "float fov" 2
+WorldBegin
+)");
+  ASSERT_TRUE(made);
+  const std::vector<std::string> mixes = {"sa:2",
+                                          "bsdf:4",
+                                          "bsdf:1+sa:1",
+                                          "line-sa@v:1",
+                                          "line-sa@u:2",
+                                          "sa:1+line-sa@v:1/free",
+                                          "sa:2/medium=line"};
+  const test::Rendered rendered = test::render(*made, test::job(8, 8, mixes, 16));
+  for (size_t m = 0; m < mixes.size(); ++m)
+    for (const float value : rendered.images[m].rgb) ASSERT_EQ(value, 0) << mixes[m];
+}
+
+/// The map's directions are drawn out along one axis: so are their solid angles.
+TEST_F(EnvironmentLines, AMapUnderAScaleThatIsNotUniform) {
+  write_map(16, 8, {{3, 2, 6.f}});
+  for (const char* name : {"mapname", "filename"})
+    for (const char* placement : {"Scale 1 1 3", "Rotate 37 1 2 3 Scale -1 0.4 2 Rotate 20 0 1 0"})
+      test::expect_agreement(
+          scene(std::string("AttributeBegin ") + placement + "\nLightSource \"infinite\" \"string " + name +
+                "\" \"map.exr\" AttributeEnd\n"),
+          kEveryMix, how());
+}
+
+/// A surface that reflects all of a constant sky is as bright as that.
+TEST_F(EnvironmentLines, AFurnaceUnderAScaleThatIsNotUniform) {
+  FilmImage map;
+  map.width = 2;
+  map.height = 1;
+  map.window = {0, 0, 2, 1};
+  map.rgb.assign(6, 0.5f);
+  ASSERT_TRUE(write_exr(folder_ / "map.exr", map, {}).ok());
+  const ScenePtr made = scene(
+      "AttributeBegin Scale 1 1 3\nLightSource \"infinite\" \"string mapname\" \"map.exr\" AttributeEnd\n",
+      R"(Material "matte" "rgb Kd" [ 1 1 1 ]
+Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ] "point P" [ -99 0 -99  -99 0 99  99 0 99  99 0 -99 ]
+)",
+      "LookAt 0 2.5 6  0 0.5 0  0 1 0\nCamera \"perspective\" \"float fov\" 5\nWorldBegin\n");
+  ASSERT_TRUE(made);
+  const std::vector<std::string> mixes = {"bsdf:4", "sa:4", "bsdf:1+sa:1", "line-sa@v:1"};
+  JobSpec spec = test::job(16, 16, mixes, 64);
+  const test::Rendered rendered = test::render(*made, spec);
+  for (size_t m = 0; m < mixes.size(); ++m) {
+    double mean = 0, variance = 0;
+    const FilmImage& image = rendered.images[m];
+    for (size_t i = 0; i < image.rgb.size(); i += 3) {
+      mean += image.rgb[i] / double(image.pixels());
+      variance += image.variance[i] / double(image.pixels() * image.pixels());
+    }
+    EXPECT_LE(std::abs(mean - 0.5), 4.5 * std::sqrt(variance) + 1e-5) << mixes[m] << ": " << mean;
+  }
 }
 
 }  // namespace

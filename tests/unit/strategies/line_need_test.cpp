@@ -32,5 +32,16 @@ TEST(LineNeed, ManyShadowRaysAskAShaft) {
   EXPECT_TRUE(needs("sa:1", 17));
 }
 
+/// Directions of the material cannot meet it: points stand for them, and those ask for shadow rays.
+TEST(LineNeed, DirectionsTowardsAnInvisibleLightAreShadowRays) {
+  LightSet set;
+  set.area.resize(2, AreaEmitter{QuadShape{Vec3f(0), Vec3f(1, 0, 0), Vec3f(0, 1, 0)}, Rgb(1)});
+  EXPECT_FALSE(needs_line_hierarchy(parse_mix("bsdf:16").value(), set));
+  set.area[1].invisible = true;
+  EXPECT_TRUE(needs_line_hierarchy(parse_mix("bsdf:16").value(), set));
+  EXPECT_TRUE(needs_line_hierarchy(parse_mix("bsdf:8+sa:8").value(), set));
+  EXPECT_FALSE(needs_line_hierarchy(parse_mix("bsdf:8+sa:7").value(), set));
+}
+
 }  // namespace
 }  // namespace penumbra
