@@ -292,13 +292,13 @@ TEST(Durability, FinishedJobsAgeOutWithTheirBlobs) {
 
 TEST(Durability, ALargeSceneDoesNotAgeOutItsJobs) {
   Cluster cluster(test_name());
-  cluster.server_flags = {"--keep-bytes", "256K", "--keep-uploads", "2s"};
+  cluster.server_flags = {"--keep-bytes", "1300K", "--keep-uploads", "2s"};
   cluster.start_server();
   cluster.start_worker(2);
   const JobId job = cluster.submit(cluster.spec(cluster.upload_scene("0" + std::string(1 << 19, ' '))));
   cluster.wait_end(job);
   sleep_seconds(5);  // two sweeps
-  EXPECT_EQ(cluster.status(job).job, job) << "its results are small";
+  EXPECT_EQ(cluster.status(job).job, job) << "its results have a megabyte, and the scene half of one more";
 }
 
 }  // namespace
