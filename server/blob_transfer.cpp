@@ -16,14 +16,6 @@ absl::Status check_digest(const std::string& digest) {
   return absl::OkStatus();
 }
 
-absl::Status check_reserve(const BlobFolder& blobs, const BlobLimits& limits, const Digest& digest) {
-  if (const uint64_t free = blobs.free_bytes(); free < limits.reserve_bytes)
-    return make_status(absl::StatusCode::kResourceExhausted,
-                       "blob {}: the server's disk has {} bytes left and keeps {} of them free", digest, free,
-                       limits.reserve_bytes);
-  return absl::OkStatus();
-}
-
 }  // namespace
 
 absl::Status check_room(const BlobFolder& blobs, const BlobLimits& limits, const Digest& digest,
@@ -66,7 +58,7 @@ absl::StatusOr<uint64_t> receive_blob(const BlobFolder& blobs, const BlobLimits&
   do {
     if (chunk.data().size() > kChunkBytes) return invalid_input("a chunk of more than {} bytes", kChunkBytes);
     // Others write to the same disk while this arrives. What is kept of it can be gone on from.
-    RETURN_IF_ERROR(check_reserve(blobs, limits, digest));
+    RETURN_IF_ERROR(check_room(blobs, limits, digest, chunk.data().size()));
     RETURN_IF_ERROR(writer->append(chunk.data()));
   } while (read(chunk));
   RETURN_IF_ERROR(writer->finish(flush));
