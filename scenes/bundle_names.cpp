@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "proto/status.h"
+#include "proto/utf8.h"
 #include "scenes/diagnostics.h"
-#include "scenes/utf8.h"
 
 namespace penumbra {
 namespace {

@@ -1,6 +1,6 @@
 #include "scenes/diagnostics.h"
 
-#include "scenes/utf8.h"
+#include "proto/utf8.h"
 
 namespace penumbra {
 

@@ -1,4 +1,4 @@
-#include "scenes/utf8.h"
+#include "proto/utf8.h"
 
 namespace penumbra {
 
