@@ -50,9 +50,13 @@ struct Side {
   std::vector<RoundSums> mixes;
 };
 
+absl::StatusOr<FetchedRun> run_on(Side& side, const JobSpec& spec, std::stop_token stop) {
+  return run_quietly(*side.backend->server, spec, stop,
+                     [&](const JobStatus&) { return side.backend->tend(); });
+}
+
 absl::Status render_round(Side& side, const JobSpec& spec, const FilmImage& reference, std::stop_token stop) {
-  ASSIGN_OR_RETURN(const FetchedRun run, run_quietly(*side.backend->server, spec, stop,
-                                                     [&](const JobStatus&) { return side.backend->tend(); }));
+  ASSIGN_OR_RETURN(const FetchedRun run, run_on(side, spec, stop));
   for (size_t m = 0; m < spec.mixes.size(); ++m) {
     ASSIGN_OR_RETURN(const ErrorFigures error, compare(run.images[m], reference));
     side.mixes[m].add(error, static_cast<double>(run.summary.mixes[m].passes),
@@ -68,8 +72,7 @@ absl::Status fix_passes(Side& side, JobSpec& spec, std::stop_token stop) {
   const bool automatic =
       std::any_of(spec.mixes.begin(), spec.mixes.end(), [](const Mix& mix) { return mix.automatic; });
   if (automatic || std::holds_alternative<SppBudget>(spec.budget)) return absl::OkStatus();
-  ASSIGN_OR_RETURN(const FetchedRun run, run_quietly(*side.backend->server, spec, stop,
-                                                     [&](const JobStatus&) { return side.backend->tend(); }));
+  ASSIGN_OR_RETURN(const FetchedRun run, run_on(side, spec, stop));
   for (const MixSummary& mix : run.summary.mixes) spec.plan.push_back(mix.passes);
   return absl::OkStatus();
 }
